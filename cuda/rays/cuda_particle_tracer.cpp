@@ -262,8 +262,8 @@ class BatchPass {
 };
 
 /// Returns the number of particles per batch, limited by memory and by the duration of a launch.
-std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
-  double const at_once = max_steps_per_launch / launches.steps_per_particle(scene.steps_across(), 0);
+std::size_t batch_size(double steps_across, LaunchesOnDevice const& launches) {
+  double const at_once = max_steps_per_launch / launches.steps_per_particle(steps_across, 0);
   return std::clamp<std::size_t>(
       std::min(most_batch_bytes / ParticleBatch::device_bytes_per_particle(launches.ladder().sums_per_pulse),
                static_cast<std::size_t>(std::min(at_once, 1e9))),
@@ -272,12 +272,12 @@ std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
 
 }  // namespace
 
-Rendering trace_particles_on_device(Scene const& scene, Particles const& particles, ParticleLight light,
-                                    RenderImages images, DeviceMedium const& medium, ScatteringCache& kept,
-                                    PinnedBuffer& staging) {
+Rendering trace_particles_on_device(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                                    ParticleLight light, RenderImages images, DeviceMedium const& medium,
+                                    ScatteringCache& kept, PinnedBuffer& staging) {
   std::optional<AiryTable> airy;
   bool const lit = images != RenderImages::no;
-  ParticleLaunches const host(scene, lit ? make_spot(scene, airy) : SpotView{}, images);
+  ParticleLaunches const host(scene, plan, lit ? make_spot(scene, airy) : SpotView{}, images);
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);
@@ -296,7 +296,8 @@ Rendering trace_particles_on_device(Scene const& scene, Particles const& particl
     pulses[pulse] = {particles.place[pulse].data(), particles.photons[pulse].data(), scattering, sheet, pulse};
   }
   Rendering rendering;
-  std::size_t const most = batch_size(scene, launches);
+  double const steps_across = scene.steps_across(plan.step);
+  std::size_t const most = batch_size(steps_across, launches);
   DeviceArray<unsigned long long> ends(frame_count * ray_status_count, "the sums over a batch's rays");
   ends.zero();
   double margin = 0;
@@ -311,7 +312,7 @@ Rendering trace_particles_on_device(Scene const& scene, Particles const& particl
       for (std::size_t step = 0; step < launches.steps(); ++step) {
         batch.fill(of_batch.emplace_back(launches.filled(step)), first, scattering, sheet);
       }
-      BatchPass pass(host, launches, std::move(of_batch), pulses, host_medium, medium, batch, scene.steps_across(),
+      BatchPass pass(host, launches, std::move(of_batch), pulses, host_medium, medium, batch, steps_across,
                      ends.data());
       if (first == 0) rendering = empty_rendering(particles);  // the truth is allocated while the device is working
       pass.finish(staging, rendering.truth);

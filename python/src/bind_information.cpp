@@ -44,10 +44,9 @@ std::vector<TracedRay> trace(SetupText const& setup, std::vector<double> const& 
   CaseSetup loaded = load_case_setup(setup.document());
   std::vector<Ray<double>> const rays = rays_of(rows, "rays", loaded.setup.max_off_axis_distance());
   for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
-  Scene scene = build_scene(loaded.setup);
+  Scene const scene = build_scene(loaded.setup);
   for (std::string const& text : scene.medium.warnings) spdlog::warn("{}", text);
-  scene = with_chosen_step(std::move(scene));
-  return trace_rays(scene, rays, through);
+  return trace_rays(scene, plan_step(scene).step, rays, through);
 }
 
 nb::tuple traced_rays(SetupText const& setup, NumberArray const& numbers, std::string const& through) {

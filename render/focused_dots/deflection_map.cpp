@@ -68,8 +68,8 @@ double way_to(Bounds<double> const& bounds, Setup const& setup) {
   return (0.5 * (bounds.low.z + bounds.high.z) + setup.z_d) / setup.z_b();
 }
 
-NodeDensity density_of(Scene const& scene, Vec2d extent) {
-  return NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, extent, scene.fineness);
+NodeDensity density_of(Scene const& scene, Vec2d extent, int fineness) {
+  return NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, extent, fineness);
 }
 
 Bounds<double> bounds_of(Scene const& scene) {
@@ -111,8 +111,9 @@ TableState table_state(Scene const& scene) {
     return TableState::dots_too_wide;
   }
   Vec2d const extent = crossed_extent(scene.setup, way);
-  return density_of(scene, extent).rays(extent.x * extent.y) <= most_rays ? TableState::made
-                                                                          : TableState::field_too_fine;
+  // A finer table is built only if it has far fewer rays than the maximum, so that the fineness has no effect here.
+  return density_of(scene, extent, 1).rays(extent.x * extent.y) <= most_rays ? TableState::made
+                                                                             : TableState::field_too_fine;
 }
 
 DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern const& sources,
@@ -147,7 +148,7 @@ DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern
       high = {std::max(high.x, c.x), std::max(high.y, c.y)};
     }
   }
-  NodeDensity const density = density_of(scene, crossed_extent(scene.setup, way));
+  NodeDensity const density = density_of(scene, crossed_extent(scene.setup, way), dots.plan().fineness);
   double const spacing_of_slopes = density.coarseness * density.spacing;
   double const reach = cone_reach(way, std::max(sources.half_size, scene.dots.half_size), stop) +
                        way * largest_aim_distance + 3 * spacing_of_slopes;

@@ -39,9 +39,10 @@ class LoneDot {
   static constexpr int largest_sample = 65536;  ///< maximum number of rays per sample whose landing the table predicts
   static constexpr int predicted_per_traced = 8;  ///< of these rays, one in so many is also traced
 
+  /// @param all    scene and plan; its dots are replaced
   /// @param place  position on the target [m]
   /// @param side   side of the windows [px]
-  LoneDot(Scene const& scene, Vec2d place, int side);
+  LoneDot(FocusedDots const& all, Vec2d place, int side);
 
   /// Returns true if the table does not cover the dot.
   bool is_uncovered() const { return seen_.kind == DotKind::left; }

@@ -162,7 +162,6 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
   }
   Rendering rendering;
   rendering.table = TableState::by_formula;
-  rendering.method = RenderMethod::formula;
   rendering.truth = truth_of(particles, spots);
   if (images == RenderImages::no) return rendering;
   double const unit = photon_unit(scene, particles, light);

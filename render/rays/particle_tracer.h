@@ -18,9 +18,9 @@ struct ParticleLaunches {
   RaysLadder ladder;
 
   /// @param spot  point spread function; a default SpotView if no images are rendered
-  ParticleLaunches(Scene const& scene, SpotView const& spot, RenderImages images)
-      : sharp(scene, spot, StopRim::sharp),
-        ladder(RaysLadder::of_rules(scene, RaysLaunch(scene, spot, StopRim::smooth), images)) {}
+  ParticleLaunches(Scene const& scene, RenderPlan const& plan, SpotView const& spot, RenderImages images)
+      : sharp(scene, plan, spot, StopRim::sharp),
+        ladder(RaysLadder::of_rules(scene, plan, RaysLaunch(scene, plan, spot, StopRim::smooth), images)) {}
 
   /// Returns the first step of the ladder for a particle whose rays fill the stop.
   /// @param light  light of the particle's image

@@ -20,7 +20,7 @@ struct TransverseGradientIntegral {
 class RayTheory {
  public:
   static constexpr int all_rings = 40;
-  /// @param launch  determines how rays are aimed
+  /// @param launch  determines the integration step and how rays are aimed
   /// @param shape  shape of extended sources
   /// @param extended  false: point sources
   /// @param most_rings  maximum number of rings of the rule over the stop; fewer give an approximate average
@@ -107,10 +107,10 @@ class RayTheory {
 };
 
 /// Estimates the processor time of small-angle theory for a scene's dots [s], with theory_ray_seconds() per ray.
-double theory_seconds(Scene const& scene);
+double theory_seconds(Scene const& scene, RenderPlan const& plan);
 
 /// map_field() and map_strain() (field_map.h) for any camera. The aperture average uses a few rays only.
-FieldMap map_field_by_rays(Scene const& scene, int spacing_px);
-StrainMap map_strain_by_rays(Scene const& scene);
+FieldMap map_field_by_rays(Scene const& scene, RenderPlan const& plan, int spacing_px);
+StrainMap map_strain_by_rays(Scene const& scene, RenderPlan const& plan);
 
 }  // namespace gladstone

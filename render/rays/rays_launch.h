@@ -5,7 +5,7 @@
 #include "render/rays/aimed_sources.h"
 #include "render/rays/stop_rule.h"
 #include "render/scene/camera.h"
-#include "render/scene/scene.h"
+#include "render/scene/render_plan.h"
 #include "render/scene/spot.h"
 
 namespace gladstone {
@@ -42,7 +42,7 @@ struct RaysLaunch {
   StopRule rule;          ///< rule for rays that fill the stop; without rings: points by `choice`
   bool ordered = false;   ///< points are in the order of ordered_point()
 
-  RaysLaunch(Scene const& scene, SpotView const& spot, StopRim rim = StopRim::smooth,
+  RaysLaunch(Scene const& scene, RenderPlan const& plan, SpotView const& spot, StopRim rim = StopRim::smooth,
              RayOrder order = RayOrder::sequence);
   /// Returns the same launch with another number of rays.
   RaysLaunch with_rays(std::uint64_t number) const;

@@ -62,6 +62,10 @@ double photon_unit(Scene const& scene, Particles const& particles, ParticleLight
 /// levels, and for BOS, whose light is not counted in photons.
 double photon_limited_exposure(Scene const& scene);
 
+/// Returns the exposure: the camera's own, or the one chosen from the brightest pixel, but at most the electrons
+/// released by the particles' photons (photon_limited_exposure()) [e].
+double choose_exposure(Scene const& scene, RenderedLight const& light);
+
 /// Smallest displacement that correlation resolves at best; smaller displacements cause a warning [px].
 inline constexpr double measurable_displacement_px = 0.01;
 

@@ -11,10 +11,6 @@ namespace gladstone {
 struct Setup;
 struct Scene;
 struct MemoryRequirement;
-struct Rendering;
-class Renderer;
-enum class RenderImages;
-enum class RenderTheory;
 
 /// Kind of light sources of a scene: dots of a target, or particles.
 struct SourceKind {
@@ -39,8 +35,6 @@ struct SourceKind {
   /// the light of a point is divided among many images, all particles remain.
   /// @return number of sources that remain
   std::size_t (*retain)(Scene& scene, std::function<bool(Vec2d pixel)> const& near);
-  /// Renders them by a renderer that supports the scene.
-  Rendering (*render)(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory);
 };
 
 extern SourceKind const dot_sources, particle_sources;

@@ -212,26 +212,22 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   prepared.correlate = loaded.correlate;
   for (auto const& text : loaded.warnings) warn(prepared.warnings, text);
   prepared.scene = build_scene(loaded.setup, known.medium);
-  Scene& scene = prepared.scene;
+  Scene const& scene = prepared.scene;
   for (auto const& text : scene.medium.warnings) warn(prepared.warnings, text);
   if (scene.second_medium) {
     for (auto const& text : scene.second_medium->warnings) warn(prepared.warnings, text);
   }
   warn_of_field(scene, prepared.warnings);  // before rays are traced through the field
-  prepared.step = known.step ? *known.step : choose_step(scene);
-  scene = with_step(std::move(scene), prepared.step);
-  if (prepared.step.change_px >= 1e-4) {
+  RenderPlan const& plan = prepared.plan = known.plan ? *known.plan : plan_rendering(scene, known.step);
+  if (IntegrationStep const& step = plan.step_estimate; step.change_px >= 1e-4) {
     warn(prepared.warnings,
          fmt::format("step_mm = {:.4g}: halving it would still shift dot {} by {:.2g} px; use a smaller medium.step_mm",
-                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
+                     step.step_mm, step.limiting_dot, step.change_px));
   }
   case_kind(scene.setup).warn_of_view(scene, prepared.warnings);
   warn_of_blur(scene, prepared.warnings);
-  prepared.rays = known.rays ? *known.rays : choose_ray_budget(scene);
-  scene = with_rays(std::move(scene), prepared.rays);
-  bool const by_table = resolve_render_method(scene) == RenderMethod::focused_dots;
   if (loaded.setup.medium.field.kind != FieldKind::none && loaded.setup.experiment().measures_density) {
-    prepared.strain = known.strain ? *known.strain : strain_in_view(scene);
+    prepared.strain = known.strain ? *known.strain : strain_in_view(scene, plan);
     if (prepared.strain.largest_px < least_displacement_px) {
       warn(prepared.warnings,
            fmt::format("no displacement: according to Eq. 9 the field displaces no point in the view by more than "
@@ -253,12 +249,13 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
     }
   }
   SetupTable root = loaded.document.root();
-  root.table("medium").resolve("step_mm", prepared.step.step_mm);
+  root.table("medium").resolve("step_mm", plan.step_estimate.step_mm);
   // "auto" remains if the number of rays differs between sources
-  if ((by_table || prepared.rays.adaptive_criteria) && !loaded.setup.render.rays_per_dot) {
+  bool const by_table = plan.method == RenderMethod::focused_dots;
+  if ((by_table || plan.adaptive_criteria) && !loaded.setup.render.rays_per_dot) {
     root.table("render").resolve("rays_per_dot", std::string("auto"));
   } else {
-    root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));
+    root.table("render").resolve("rays_per_dot", static_cast<long long>(plan.rays));
   }
   if (loaded.setup.experiment().sources.on_target && loaded.setup.target.kind != TargetKind::points) {
     Vec2d const extent = loaded.setup.target_extent();

@@ -48,12 +48,11 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemor
 /// @throws SetupError with all problems
 void check_setup_keys(SetupDocument document);
 
-/// A case ready to render: scene, integration step, ray budget and strain map.
+/// A case ready to render: scene, plan of the rendering and strain map.
 struct PreparedCase {
   Scene scene;
   CorrelationSettings correlate;
-  IntegrationStep step;
-  RayBudget rays;
+  RenderPlan plan;
   StrainMap strain;
   std::vector<std::string> warnings;
 };
@@ -62,11 +61,11 @@ struct PreparedCase {
 struct ReusableParts {
   BuiltMedium const* medium = nullptr;
   IntegrationStep const* step = nullptr;
-  RayBudget const* rays = nullptr;
+  RenderPlan const* plan = nullptr;  ///< with this step
   StrainMap const* strain = nullptr;
 };
 
-/// Builds the scene and determines step and rays. Resolves every "auto" value of the setup except the exposure and, if
+/// Builds the scene and plans its rendering. Resolves every "auto" value of the setup except the exposure and, if
 /// rays are chosen per dot, render.rays_per_dot.
 PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known = {});
 
@@ -80,13 +79,9 @@ struct RenderedCase {
 /// Returns the announcement of a long rendering: its sources, the expected time and how to shorten it. Empty if it
 /// takes at most 20 s.
 /// @param expected_s  estimate of the wall time [s]; for adaptive ray numbers of dots, of the largest number
-std::string rendering_announcement(Scene const& scene, double expected_s);
+std::string rendering_announcement(Scene const& scene, RenderPlan const& plan, double expected_s);
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
-
-/// Returns the exposure: the camera's own, or the one chosen from the brightest pixel, but at most the electrons
-/// released by the particles' photons (photon_limited_exposure) [e].
-double choose_exposure(Scene const& scene, RenderedLight const& light);
 
 /// Records both frames of a rendering with the camera's noise and quantization.
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered);

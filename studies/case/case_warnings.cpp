@@ -37,10 +37,11 @@ std::string describe_error(double error, double resolution, std::string_view uni
 }
 
 void warn_of_ray_limit(std::vector<std::string>& warnings, PreparedCase const& prepared, Rendering const& rendering) {
-  if (!prepared.rays.adaptive_criteria || prepared.rays.rays == 1) return;
-  bool const by_table = rendering.method == RenderMethod::focused_dots;  // only the others take as many as required
-  auto const limit =
-      static_cast<std::int64_t>(by_table ? max_rays_per_source(prepared.scene) : largest_ray_number(prepared.scene));
+  if (!prepared.plan.adaptive_criteria || prepared.plan.rays == 1) return;
+  bool const by_table =
+      rendering.plan.method == RenderMethod::focused_dots;  // only the others take as many as required
+  auto const limit = static_cast<std::int64_t>(by_table ? max_rays_per_source(prepared.scene, prepared.plan)
+                                                        : largest_ray_number(prepared.scene, prepared.plan));
   std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
   std::size_t at_limit = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -65,11 +66,11 @@ void warn_of_images(std::vector<std::string>& warnings, CameraSetup const& camer
 }
 
 std::optional<SideFaceAccuracy> side_face_accuracy(Scene const& scene, Rendering const& rendering) {
-  if (rendering.method != RenderMethod::focused_dots) return std::nullopt;
+  if (rendering.plan.method != RenderMethod::focused_dots) return std::nullopt;
   SideFaceAccuracy there;
   bool seen = false;
   double squares = 0, components = 0;
-  for (std::size_t const dot : sources_at_side_faces(scene, scene.dots)) {
+  for (std::size_t const dot : sources_at_side_faces(scene, rendering.plan, scene.dots)) {
     ++there.dots;
     there.most_rays = std::max(there.most_rays, rendering.truth.rays_planned[dot]);
     seen = seen || scene.in_view(scene.dots.centre[dot]);
@@ -134,8 +135,10 @@ void warn_of_table(std::vector<std::string>& warnings, TableError const& error) 
            error.fineness == 1 ? "render.rays_per_dot = \"auto\" selects a finer table; " : ""));
 }
 
-std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
-                           double pupil_margin, std::string_view where) {
+std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, Rendering const& rendering,
+                           std::string_view where) {
+  GroundTruth const& truth = rendering.truth;
+  double const pupil_margin = rendering.pupil_margin;
   std::int64_t unseen = 0, in_reference = 0;                     // in one of the frames; in the reference
   std::int64_t rays = std::numeric_limits<std::int64_t>::max();  // smallest number of rays of an unseen dot
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -146,7 +149,9 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
   }
   // unseen particles are those outside the light sheet
   if (unseen == 0 || !scene.setup.experiment().sources.on_target) return static_cast<std::size_t>(unseen);
-  double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
+  double const stop = scene.imaging.entrance_pupil / 2;
+  double const edge = Scene::stop_edge(static_cast<double>(rendering.plan.rays));
+  double const disc = stop * std::sqrt(1 + edge / 2) + rendering.plan.pupil_margin;  // to which rays are sent
   double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
   constexpr double few = 16;  // if 16 passing rays are expected, none passes with a probability of e^-16
   if (!scene.chief_rays_only() && pupil_margin > 0 && passing < few) {
@@ -261,7 +266,7 @@ RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCa
                      rendered.exposure_e * rendering.in_place->brightest());
   warn_of_exposure(warnings, prepared.scene, rendered.exposure_e, rendering.in_place->brightest());
   RenderedOutcome outcome;
-  outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering.truth, rendering.pupil_margin);
+  outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering);
   outcome.accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
   warn_of_ray_limit(warnings, prepared, rendering);
   outcome.side_faces = side_face_accuracy(prepared.scene, rendering);

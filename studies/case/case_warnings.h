@@ -42,11 +42,10 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
 void warn_of_table(std::vector<std::string>& warnings, TableError const& error);
 
 /// Warns of dots that are not seen in one of the frames, and names the cause: the lens, the flow or too few rays.
-/// @param pupil_margin  pupil enlargement used by the rendering [m]; 0: no ray is deflected
 /// @param where  plane of the dots, for the message, such as " of the plane Z = 10 mm"
 /// @return number of unseen sources; particles count although no warning is given for them
-std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
-                           double pupil_margin, std::string_view where = "");
+std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, Rendering const& rendering,
+                           std::string_view where = "");
 
 /// Warns of saturated pixels and names the dominant cause.
 /// @param light_e  charge that light releases in the brightest pixel [e]

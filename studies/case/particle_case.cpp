@@ -70,8 +70,9 @@ nlohmann::json spread_of_light(std::vector<double> values) {
 
 }  // namespace
 
-void write_particle_truth(std::string const& path, Scene const& scene, GroundTruth const& truth,
-                          StatusCounts const& statuses, RenderMethod method, FileOrigin const& origin) {
+void write_particle_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
+                          FileOrigin const& origin) {
+  GroundTruth const& truth = rendering.truth;
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   Hdf5Axes axes(file);
@@ -105,7 +106,7 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
       "planned number of rays of the particle at each pulse; 0: not traced, since its light cannot reach the sensor",
       "particle");
   std::vector<std::int64_t> counts;
-  for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
+  for (auto const& frame : rendering.statuses) counts.insert(counts.end(), frame.begin(), frame.end());
   file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
              "rays by status: alive, missed_sensor, vignetted, total_internal_reflection, lost_in_medium, missed_lens",
              "pulse, status");
@@ -120,8 +121,8 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
   file.attribute("/particles", "conventions",
                  "displacement = second pulse minus first; column right and row down from 0 at the first pixel's "
                  "centre; the medium is present at both pulses");
-  file.attribute("/", "method", to_string(method));
-  file.attribute("/particles", "step_mm", scene.step * 1e3);
+  file.attribute("/", "method", to_string(rendering.plan.method));
+  file.attribute("/particles", "step_mm", rendering.plan.step * 1e3);
   file.attribute("/particles", "magnification", scene.imaging.magnification);
   file.attribute("/particles", "path_error_m", scene.particles.path.error);
   file.attribute("/particles", "lag_error_m", scene.particles.path.lag_error);

@@ -143,10 +143,11 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
   return rays;
 }
 
-std::vector<TracedRay> trace_rays(Scene const& scene, std::vector<Ray<double>> const& rays, Through through) {
+std::vector<TracedRay> trace_rays(Scene const& scene, double step, std::vector<Ray<double>> const& rays,
+                                  Through through) {
   std::vector<TracedRay> traced(rays.size());
-  TracingOptions<double> const options{scene.step, scene.setup.medium.ambient_refractivity(),
-                                       scene.setup.medium.integrator, scene.setup.medium.faces};
+  TracingOptions<double> const options{step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
+                                       scene.setup.medium.faces};
   std::visit(
       [&](auto const& medium) {
         parallel_chunks(rays.size(), 256, [&](std::size_t begin, std::size_t end) {

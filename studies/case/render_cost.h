@@ -32,8 +32,8 @@ struct RenderCost {
 /// @throws DataError if a file cannot be read
 RenderCost estimate_render_cost(Setup const& setup);
 
-/// Estimates the processor time for rendering a prepared scene as estimate_render_cost() does [s]; for adaptive ray
+/// Estimates the processor time for rendering a scene by a plan as estimate_render_cost() does [s]; for adaptive ray
 /// numbers of particles with the number of rays that it expects.
-double expected_render_seconds(Scene const& scene, RenderTheory theory);
+double expected_render_seconds(Scene const& scene, RenderPlan const& plan, RenderTheory theory);
 
 }  // namespace gladstone

@@ -68,8 +68,9 @@ void write_field_map(Hdf5Writer& file, FieldMap const& field, Hdf5Axes& axes) {
 
 }  // namespace
 
-void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, RenderMethod method, TableError const* table, FileOrigin const& origin) {
+void write_truth(std::string const& path, Scene const& scene, Rendering const& rendering, FieldMap const& field,
+                 TableError const* table, FileOrigin const& origin) {
+  GroundTruth const& truth = rendering.truth;
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   Hdf5Axes axes(file);
@@ -102,7 +103,7 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
              "it is the centroid of the rays",
              "dot");
   std::vector<std::int64_t> counts;
-  for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
+  for (auto const& frame : rendering.statuses) counts.insert(counts.end(), frame.begin(), frame.end());
   file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
              "rays by status: alive, missed_sensor, vignetted, total_internal_reflection, lost_in_medium, missed_lens",
              "frame (reference, flow), status");
@@ -120,12 +121,12 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
       "/dots", "conventions",
       "displacement = flow minus reference; column right and row down from 0 at the first pixel's centre; dots "
       "appear displaced against grad n");
-  file.attribute("/", "method", to_string(method));
+  file.attribute("/", "method", to_string(rendering.plan.method));
   if (table) {
     file.attribute("/dots", "table_truth_error_px", std::max(table->truth_px, table->truth_resolution_px));
     file.attribute("/dots", "table_image_error_levels", std::max(table->image_levels, table->image_resolution_levels));
   }
-  file.attribute("/dots", "step_mm", scene.step * 1e3);
+  file.attribute("/dots", "step_mm", rendering.plan.step * 1e3);
   file.attribute("/dots", "magnification", scene.imaging.magnification);
   file.close();
 }

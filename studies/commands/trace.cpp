@@ -41,20 +41,20 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     stop_point("tracing-rays");
     if (options.device == "cuda") throw DeviceError("trace: traces its few rays on the CPU; use --device cpu or auto");
     for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
-    Scene scene = build_scene(loaded.setup);
+    Scene const scene = build_scene(loaded.setup);
     for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);
-    scene = with_chosen_step(std::move(scene));
+    double const step = plan_step(scene).step;
     Through const through = arguments->through == "medium"   ? Through::medium
                             : arguments->through == "optics" ? Through::optics
                                                              : Through::all;
-    std::vector<TracedRay> const traced = trace_rays(scene, rays, through);
+    std::vector<TracedRay> const traced = trace_rays(scene, step, rays, through);
     std::string const text_of_rays = traced_rays_csv(traced);
     output.write(text_of_rays.data(), text_of_rays.size());
     sources.check();
     output.commit();
     std::size_t counts[ray_status_count] = {};
     for (TracedRay const& ray : traced) ++counts[static_cast<int>(ray.status)];
-    nlohmann::json json{{"file", arguments->output}, {"rays", traced.size()}, {"step_mm", scene.step * 1e3}};
+    nlohmann::json json{{"file", arguments->output}, {"rays", traced.size()}, {"step_mm", step * 1e3}};
     std::string text = fmt::format("{}: {} rays", arguments->output, traced.size());
     for (int status = 0; status < ray_status_count; ++status) {
       char const* const word = to_string(static_cast<RayStatus>(status));

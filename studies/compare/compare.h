@@ -68,13 +68,13 @@ struct Comparison {
 
 /// Traces virtual dots of the target's size whose mid-position (or reference position) is each of `centres_px`. Finds
 /// their positions on the target by two corrections with few rays, then computes truth and theory with all rays.
-GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
-                            RenderTheory theory);
+GroundTruth truth_at_points(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                            std::vector<Vec2d> const& centres_px, TruthAt at, RenderTheory theory);
 
 /// Computes the displacements of the same virtual dots through an ideal thin lens that images the target sharply at the
 /// scene's magnification, with the same rays and aperture stop [px]. The difference from the actual lens, including
 /// defocus, is the budget's aberration.
-std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point);
+std::vector<Vec2d> ideal_lens_truth(Scene scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point);
 
 /// Vectors to be compared and their origin.
 struct MeasuredVectors {

@@ -34,10 +34,11 @@ struct ComparisonKind {
   /// Returns the stages of the budget from the theory to the ray truth.
   std::vector<BudgetStage> (*stages)(Comparison const& comparison);
   /// Computes truth and theory at points of the image, see truth_of_vectors().
-  PointTruth (*truth)(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px, TruthAt at);
+  PointTruth (*truth)(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                      std::vector<Vec2d> const& position_px, TruthAt at);
   /// Computes the true displacements alone.
-  GroundTruth (*displacements)(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px,
-                               TruthAt at);
+  GroundTruth (*displacements)(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                               std::vector<Vec2d> const& position_px, TruthAt at);
   /// Returns true if the true displacements require no rays.
   bool (*without_rays)(Scene const& scene);
 };

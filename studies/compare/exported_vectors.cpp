@@ -67,7 +67,8 @@ ExportedVectors compute_map_for_export(std::string const& path, Renderer& render
   copy_provenance(Hdf5Reader(path), vectors.origin);
   std::string const folder = std::filesystem::path(path).parent_path().string();
   PreparedCase const prepared = prepare_stored_case(folder.empty() ? "." : folder);
-  vectors.field = vectors_of_map(displacement_truth(prepared.scene, renderer, at, spacing_px, traced), spacing_px);
+  vectors.field =
+      vectors_of_map(displacement_truth(prepared.scene, prepared.plan, renderer, at, spacing_px, traced), spacing_px);
   vectors.format = "gladstone truth";
   return vectors;
 }

@@ -24,8 +24,8 @@ double largest_gradient(Setup const& setup) {
   if (auto const known = closed_form_gradient(setup)) return *known;
   double largest = 0;
   constexpr int lattice_px = 4;
-  Scene const scene = with_chosen_step(build_scene(setup));
-  for (Vec2d const gradient : map_field(scene, lattice_px).density_gradient) {
+  Scene const scene = build_scene(setup);
+  for (Vec2d const gradient : map_field(scene, plan_step(scene).step, lattice_px).density_gradient) {
     largest = std::max(largest, length(gradient));
   }
   return largest;

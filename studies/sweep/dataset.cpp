@@ -204,8 +204,9 @@ void write_packed_case(Hdf5Writer& file, std::size_t i, CaseWithImages const& on
   file.write_rows<double>("/truth/flux", row, flux);
   PreparedCase const prepared = prepare_stored_case(one.folder);
   for (DisplacementMapName const& map : maps) {
-    file.write_rows<double>(
-        map.name, i, numbers_of(displacement_truth(prepared.scene, renderer, map.at, static_cast<int>(sizes.spacing))));
+    file.write_rows<double>(map.name, i,
+                            numbers_of(displacement_truth(prepared.scene, prepared.plan, renderer, map.at,
+                                                          static_cast<int>(sizes.spacing))));
   }
 }
 

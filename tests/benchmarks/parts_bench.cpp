@@ -15,8 +15,8 @@ namespace {
 
 /// Sobol points, sines and a square root or two: a ray as it leaves its dot.
 void emit_rays(benchmark::State& state) {
-  Scene const scene = table1_scene(8, 64);
-  RaysLaunch const launch(scene, SpotView{});
+  PlannedScene const scene = table1_scene(8, 64);
+  RaysLaunch const launch(scene, scene.plan, SpotView{});
   LambertSources<double> const lambert{scene.dots.view(-scene.setup.z_d)};
   AimedBundle<double> const bundle = launch.bundle(*launch.sight(lambert.middle(0)), {{}, {}, lambert.reach()}, 0);
   std::uint64_t ray = 0;
@@ -46,7 +46,7 @@ BENCHMARK(spread_over_pixels);
 
 /// One ray's light gathered around its dot.
 void deposit_spot(benchmark::State& state) {
-  Scene const scene = table1_scene(2, 64);
+  PlannedScene const scene = table1_scene(2, 64);
   std::optional<AiryTable> airy;
   LightPatch patch(make_spot(scene, airy));
   double p = 99.0;
@@ -78,22 +78,22 @@ void sample_in_a_row(benchmark::State& state, Medium const& medium, Vec3d start,
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 void sample_volume(benchmark::State& state) {
-  Scene const scene = volume_scene(64, 2, 1);
+  PlannedScene const scene = volume_scene(64, 2, 1);
   sample_in_a_row(state, std::get<SplineVolume<double>>(scene.medium.view), {1e-3, 2e-3, -16e-3}, {0, 0, 0.5e-3});
 }
 BENCHMARK(sample_volume);
 void sample_plane(benchmark::State& state) {
-  Scene const scene = plane_scene(2, 1);
+  PlannedScene const scene = plane_scene(2, 1);
   sample_in_a_row(state, std::get<SplinePlane<double>>(scene.medium.view), {1e-3, 2e-3, -4e-3}, {2e-5, 1e-5, 0.1e-3});
 }
 BENCHMARK(sample_plane);
 
 /// Rays through a 64^3 volume, nothing else.
 void trace_volume(benchmark::State& state) {
-  Scene const scene = volume_scene(64, 32, 64);
+  PlannedScene const scene = volume_scene(64, 32, 64);
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::vector<Ray<double>> const rays = rays_of_dots(scene, 7, 1);
-  TracingOptions<double> const tracing = focused_dots(scene).value().bench().tracing;
+  TracingOptions<double> const tracing = focused_dots(scene, scene.plan).value().bench().tracing;
   std::size_t next = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(trace_medium(volume, tracing, rays[next]));
@@ -107,10 +107,10 @@ BENCHMARK(trace_volume);
 /// Traces several rays at once through a volume.
 template <int N>
 void trace_volume_together(benchmark::State& state) {
-  Scene const scene = volume_scene(64, 32, 64);
+  PlannedScene const scene = volume_scene(64, 32, 64);
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::vector<Ray<double>> const all = rays_of_dots(scene, 7, N);
-  TracingOptions<double> const tracing = focused_dots(scene).value().bench().tracing;
+  TracingOptions<double> const tracing = focused_dots(scene, scene.plan).value().bench().tracing;
   std::size_t bundle = 0;
   for (auto _ : state) {
     Ray<double> rays[N];

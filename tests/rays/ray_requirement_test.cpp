@@ -32,8 +32,8 @@ struct Place {
 
 /// Returns a planned scene with these particles, which move by (0.05, 0.02, 0.1) mm; a light of 1 is that of the
 /// brightest particle of 1 um.
-Scene scene_with(Setup const& setup, std::vector<Place> const& places) {
-  Scene scene = build_scene(setup);
+PlannedScene scene_with(Setup const& setup, std::vector<Place> const& places) {
+  PlannedScene scene(build_scene(setup));
   LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
   scene.particles.resize(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -44,28 +44,28 @@ Scene scene_with(Setup const& setup, std::vector<Place> const& places) {
       scene.particles.photons[pulse][i] = sheet.photons(scene.particles.place[pulse][i], pulse);
     }
   }
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+  plan_step(scene);
+  scene.plan = plan_rays_by_tracing(scene, scene.plan);
   return scene;
 }
 
-Rendering render(Scene scene) {
-  return scene.setup.piv
-             ? RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes)
-             : RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+Rendering render(PlannedScene scene) {
+  return scene.setup.piv ? RaysRenderer().render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered,
+                                                           RenderImages::yes)
+                         : RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no);
 }
 
-std::vector<std::int64_t> planned(Scene const& scene) { return render(scene).truth.rays_planned; }
+std::vector<std::int64_t> planned(PlannedScene const& scene) { return render(scene).truth.rays_planned; }
 
 /// Returns the scene with the maximum number of rays for every source.
-Scene of_most_rays(Scene scene) {
-  scene.adaptive_criteria->level *= 1e-12;
+PlannedScene of_most_rays(PlannedScene scene) {
+  scene.plan.adaptive_criteria->level *= 1e-12;
   return scene;
 }
 
 /// Returns the rms error over the lit pixels of the worse frame [grey levels of the plan].
-double image_error(Scene const& scene, LightPair const& found, LightPair const& exact) {
-  double worse = 0, level = scene.adaptive_criteria->level;
+double image_error(PlannedScene const& scene, LightPair const& found, LightPair const& exact) {
+  double worse = 0, level = scene.plan.adaptive_criteria->level;
   for (auto frame : {&LightPair::reference, &LightPair::flow}) {
     double square = 0;
     int lit = 0;
@@ -119,13 +119,13 @@ TEST(StopRule, IntegratesPolynomialsExactly) {
 // The circle of confusion is 2 px wide at z of about 14 mm. A particle in focus needs four rays; out of focus, the
 // number increases with the width of the circle relative to the PSF.
 TEST(RayNeed, IsMoreOutOfFocus) {
-  Scene const scene =
+  PlannedScene const scene =
       scene_with(exposed_setup(),
                  {{{0, 0, -0.05 * mm}}, {{2 * mm, 0, 3 * mm}}, {{0, 2 * mm, 12 * mm}}, {{2 * mm, 2 * mm, 25 * mm}}});
   std::vector<std::int64_t> const rays = planned(scene);
   EXPECT_EQ(rays[0], 4);
   for (std::size_t i = 1; i < rays.size(); ++i) EXPECT_GT(rays[i], rays[i - 1]) << i;
-  EXPECT_LE(rays[3], static_cast<std::int64_t>(scene.rays_per_dot));
+  EXPECT_LE(rays[3], static_cast<std::int64_t>(scene.plan.rays));
 }
 
 // The light is proportional to the square of the diameter: for a particle of a tenth of the diameter, the same relative
@@ -176,7 +176,7 @@ TEST(RayNeed, IsEnough) {
   gladstone::Setup real = exposed_setup();
   real.lens = real_lens_setup("double_gauss", 128, 8).lens;
   for (gladstone::Setup const& setup : {exposed_setup(), blob, real}) {
-    Scene const scene = scene_with(setup, places);
+    PlannedScene const scene = scene_with(setup, places);
     Rendering const found = render(scene), exact = render(of_most_rays(scene));
     std::vector<std::int64_t> const& rays = found.truth.rays_planned;
     auto const [least, most] = std::minmax_element(rays.begin(), rays.end());
@@ -200,10 +200,10 @@ TEST(RayNeed, ImageErrorContainsWhatARuleLeavesOfAberrations) {
   setup.lens = real_lens_setup("achromat", 128, 8).lens;
   std::vector<Place> places;
   for (int i = 0; i < 20; ++i) places.push_back({{(0.5 * i - 5) * mm, (i % 5 - 2) * 2 * mm, (i % 3 - 1) * mm}});
-  Scene const scene = scene_with(setup, places);
+  PlannedScene const scene = scene_with(setup, places);
   Rendering const found = render(scene), exact = render(of_most_rays(scene));
   double const off = image_error(scene, found.light, exact.light);
-  double const stated = measure_image_error(scene, scene.adaptive_criteria->level);
+  double const stated = measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria->level);
   EXPECT_GT(off, 0.01);
   EXPECT_LT(off, 3 * stated) << stated;
   EXPECT_GT(off, stated / 3) << stated;
@@ -218,9 +218,9 @@ TEST(RayNeed, IsTheSameOnAnyNumberOfThreads) {
   setup.piv->particles.amount = 60;
   auto const render_on = [&](int threads) {
     set_thread_count(threads);
-    Scene scene = build_scene(setup);
-    scene = with_step(scene, determine_step_by_tracing(scene));
-    scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+    PlannedScene scene(build_scene(setup));
+    plan_step(scene);
+    scene.plan = plan_rays_by_tracing(scene, scene.plan);
     return render(scene);
   };
   int const before = thread_count();
@@ -232,16 +232,16 @@ TEST(RayNeed, IsTheSameOnAnyNumberOfThreads) {
 }
 
 /// Returns points of a target behind a small blob, in an image of 8 bits.
-Scene points_behind_blob(std::vector<Vec2d> const& at_px) {
+PlannedScene points_behind_blob(std::vector<Vec2d> const& at_px) {
   auto setup = table1_setup(96);
   setup.medium.field = GaussianBlob<double>{{{2 * mm, 0, 0}, -0.4, 0.8 * mm}};
   setup.medium.thickness = 10 * mm;
   setup.camera.bit_depth = 8;
   setup.camera.exposure_e = 20000;
   setup.target.dot_diameter_px = 0;
-  Scene scene = scene_with_dots(setup, at_px, 1);
+  PlannedScene scene = scene_with_dots(setup, at_px, 1);
   scene.setup.render.rays_per_dot.reset();
-  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+  scene.plan = plan_rays_by_tracing(scene, scene.plan);
   return scene;
 }
 
@@ -253,15 +253,15 @@ TEST(RayNeed, IsMoreOfADotThatNoRayShows) {
   setup.medium.field = GaussianPlume<double>{{{}, 8.0, 2 * mm}};
   setup.medium.thickness = 50 * mm;
   setup.camera.exposure_e = 20000;
-  Scene scene = scene_with_dots(setup, lattice(64, 6, 9), 32);
-  scene = with_step(scene, determine_step_by_tracing(scene));
+  PlannedScene scene = scene_with_dots(setup, lattice(64, 6, 9), 32);
+  plan_step(scene);
   auto const unseen = [](GroundTruth const& truth) {
     return std::count_if(truth.displacement_px.begin(), truth.displacement_px.end(),
                          [](Vec2d d) { return std::isnan(d.x); });
   };
   EXPECT_GT(unseen(render(scene).truth), 0);
   scene.setup.render.rays_per_dot.reset();
-  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+  scene.plan = plan_rays_by_tracing(scene, scene.plan);
   EXPECT_EQ(unseen(render(scene).truth), 0);
 }
 
@@ -270,14 +270,14 @@ TEST(RayNeed, IsMoreOfADotThatNoRayShows) {
 TEST(RayNeed, IsOfTheDotsThatNeedIt) {
   std::vector<Vec2d> at;
   for (int i = 0; i < 12; ++i) at.push_back({4 + 8.0 * i, 47.3 + 0.1 * i});
-  Scene const scene = points_behind_blob(at);
+  PlannedScene const scene = points_behind_blob(at);
   Rendering const found = render(scene);
   std::vector<std::int64_t> const& rays = found.truth.rays_planned;
   auto const [least, most] = std::minmax_element(rays.begin(), rays.end());
   EXPECT_GE(*most, 4 * *least);
   for (std::size_t i = 0; i < at.size(); ++i) {
     Vec2d const error = found.truth.displacement_error_px[i];
-    if (rays[i] < static_cast<std::int64_t>(scene.rays_per_dot)) {
+    if (rays[i] < static_cast<std::int64_t>(scene.plan.rays)) {
       EXPECT_LE(dot(error, error), 2 * truth_tolerance_px * truth_tolerance_px) << i;
     }
     if (i % 5 != 0) continue;
@@ -285,9 +285,9 @@ TEST(RayNeed, IsOfTheDotsThatNeedIt) {
     EXPECT_EQ(alone.rays_planned[0], rays[i]);
     EXPECT_EQ(alone.displacement_px[0], found.truth.displacement_px[i]);
   }
-  Scene many = scene;
-  many.adaptive_criteria.reset();
-  many.rays_per_dot = 65536;
+  PlannedScene many = scene;
+  many.plan.adaptive_criteria.reset();
+  many.plan.rays = 65536;
   Rendering const exact = render(many);
   EXPECT_LT(truth_error(found.truth, exact.truth), truth_tolerance_px);
   EXPECT_LT(image_error(scene, found.light, exact.light), image_tolerance_levels);

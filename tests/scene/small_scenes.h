@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "render/focused_dots/focused_dots_renderer.h"
-#include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
-#include "render/scene/scene.h"
+#include "tests/scene/planned_scene.h"
 
 namespace gladstone {
 
@@ -44,39 +43,34 @@ inline FieldSetup dns_plane(std::string const& instant) {
   return field;
 }
 
-/// Plans the step of a scene and sets it.
-inline IntegrationStep plan_step(Scene& scene) {
-  IntegrationStep const plan = determine_step_by_tracing(scene);
-  scene = with_step(std::move(scene), plan);
-  return plan;
-}
-
 /// Returns a scene with dots at given positions in the reference image [px] and a given number of rays, with its step
 /// and margin planned.
-inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px, std::uint64_t rays) {
+inline PlannedScene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px, std::uint64_t rays) {
   Setup bare = setup;
   bare.target.dots_per_32px_window = 1;
   bare.target.dot_diameter_px = 0;
-  Scene scene = build_scene(bare);
+  PlannedScene scene(build_scene(bare));
   scene.setup = setup;
   scene.dots.half_size = setup.dot_diameter() / 2;
   scene.dots.centre.clear();
   for (Vec2d const p : at_px) scene.dots.centre.push_back(scene.to_target(p));
   plan_step(scene);
-  scene.setup.render.rays_per_dot = scene.rays_per_dot = rays;
+  scene.setup.render.rays_per_dot = scene.plan.rays = rays;
   return scene;
 }
 
 /// Renders a scene by the fast renderer, or by the general one if the fast renderer does not support all of its dots.
-inline Rendering render_either(Scene const& scene, RenderImages images, RenderTheory theory) {
-  if (focused_dots(scene)) {
-    Rendering rendering = FocusedDotsRenderer().render(scene, scene.dots, images, theory);
+inline Rendering render_either(PlannedScene const& scene, RenderImages images, RenderTheory theory) {
+  if (focused_dots(scene, scene.plan)) {
+    Rendering rendering = FocusedDotsRenderer().render(scene, scene.plan, scene.dots, images, theory);
     if (rendering.left.empty()) return rendering;
   }
-  return RaysRenderer().render(scene, scene.dots, images, theory);
+  return RaysRenderer().render(scene, scene.plan, scene.dots, images, theory);
 }
-inline Rendering render_all(Scene const& scene) { return render_either(scene, RenderImages::yes, RenderTheory::yes); }
-inline GroundTruth trace_truth(Scene const& scene, RenderTheory theory = RenderTheory::yes) {
+inline Rendering render_all(PlannedScene const& scene) {
+  return render_either(scene, RenderImages::yes, RenderTheory::yes);
+}
+inline GroundTruth trace_truth(PlannedScene const& scene, RenderTheory theory = RenderTheory::yes) {
   return render_either(scene, RenderImages::no, theory).truth;
 }
 

@@ -56,10 +56,9 @@ class DepthOfTheMedium : public testing::Test {
 
 /// Largest displacement by Eq. 9 in the truth of a rendering, over all pixels [px].
 double rendered_displacement(CaseSetup const& loaded) {
-  Scene scene = build_scene(loaded.setup);
-  scene = with_chosen_step(std::move(scene));
+  Scene const scene = build_scene(loaded.setup);
   double largest = 0;
-  for (Vec2d const one : map_field(scene, 1).eq9_px) largest = std::max(largest, length(one));
+  for (Vec2d const one : map_field(scene, plan_step(scene).step, 1).eq9_px) largest = std::max(largest, length(one));
   return largest;
 }
 

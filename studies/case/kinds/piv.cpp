@@ -57,7 +57,7 @@ void warn_of_unsuitable_particles(Scene const& scene, std::vector<std::string>& 
 
 void write_truth_of_particles(std::string const& path, Scene const& scene, Rendering const& rendering,
                               CaseOutcome const& /*outcome*/, FileOrigin const& origin) {
-  write_particle_truth(path, scene, rendering.truth, rendering.statuses, rendering.method, origin);
+  write_particle_truth(path, scene, rendering, origin);
 }
 
 }  // namespace

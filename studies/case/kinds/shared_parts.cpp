@@ -41,7 +41,7 @@ CaseWriter render_pair(CaseSetup& loaded, Renderer& renderer, ReusableParts cons
     entry.rays = static_cast<std::uint64_t>(*least);
     entry.most_rays = static_cast<std::uint64_t>(*most);
   }
-  entry.step_mm = finished->prepared.step.step_mm;
+  entry.step_mm = finished->prepared.plan.step_estimate.step_mm;
   entry.magnification = finished->prepared.scene.imaging.magnification;
   entry.exposure_e = finished->rendered.exposure_e;
   entry.seconds = finished->rendered.seconds;
@@ -73,7 +73,7 @@ void warn_of_dots_out_of_view(Scene const& scene, std::vector<std::string>& warn
 void write_dot_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
                      CaseOutcome const& outcome, FileOrigin const& origin) {
   constexpr int map_spacing_px = 2;  // turbulent fronts are a few pixels wide
-  write_truth(path, scene, rendering.truth, rendering.statuses, field_in_view(scene, map_spacing_px), rendering.method,
+  write_truth(path, scene, rendering, field_in_view(scene, rendering.plan, map_spacing_px),
               outcome.table_error ? &*outcome.table_error : nullptr, origin);
 }
 

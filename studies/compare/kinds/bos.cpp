@@ -14,16 +14,17 @@ std::vector<BudgetStage> stages_from_eq9(Comparison const& comparison) {
           {"lens", comparison.point.displacement_px}};
 }
 
-PointTruth truth_of_dots(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px, TruthAt at) {
+PointTruth truth_of_dots(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                         std::vector<Vec2d> const& position_px, TruthAt at) {
   PointTruth truth;
-  truth.point = truth_at_points(scene, renderer, position_px, at, RenderTheory::yes);
-  truth.thin_lens = ideal_lens_truth(scene, renderer, truth.point);
+  truth.point = truth_at_points(scene, plan, renderer, position_px, at, RenderTheory::yes);
+  truth.thin_lens = ideal_lens_truth(scene, plan, renderer, truth.point);
   return truth;
 }
 
-GroundTruth dot_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px,
-                              TruthAt at) {
-  return truth_at_points(scene, renderer, position_px, at, RenderTheory::no);
+GroundTruth dot_displacements(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                              std::vector<Vec2d> const& position_px, TruthAt at) {
+  return truth_at_points(scene, plan, renderer, position_px, at, RenderTheory::no);
 }
 
 bool by_rays(Scene const& /*scene*/) { return false; }

@@ -11,9 +11,9 @@ std::vector<BudgetStage> stages_from_flow(Comparison const& comparison) {
   return {{"flow", comparison.flow_px}, {"ambient", comparison.ambient_px}, {"seen", comparison.point.displacement_px}};
 }
 
-PointTruth truth_of_particles(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px,
-                              TruthAt at) {
-  ParticlePoints points = particle_points(scene, renderer, position_px, at);
+PointTruth truth_of_particles(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                              std::vector<Vec2d> const& position_px, TruthAt at) {
+  ParticlePoints points = particle_points(scene, plan, renderer, position_px, at);
   return {std::move(points.seen), {}, std::move(points.flow_px), std::move(points.ambient_px)};
 }
 

@@ -31,25 +31,27 @@ Setup droplets_setup(Setup setup, double sheet) {
 }
 
 /// @param rays of a particle; 0: what accuracy takes
-Scene droplets_scene(Setup const& setup, std::uint64_t rays) {
-  Scene scene = build_scene(setup);
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  if (rays == 0) scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
-  if (rays > 0) scene.rays_per_dot = rays;
+PlannedScene droplets_scene(Setup const& setup, std::uint64_t rays) {
+  PlannedScene scene(build_scene(setup));
+  plan_step(scene);
+  if (rays == 0) scene.plan = plan_rays_by_tracing(scene, scene.plan);
+  if (rays > 0) scene.plan.rays = rays;
   return scene;
 }
 
 /// Renders a pair again and again, and says how many rays particles take. @return the median time [s]
-double seconds_a_pair(benchmark::State& state, Scene const& scene, RenderImages images) {
+double seconds_a_pair(benchmark::State& state, PlannedScene const& scene, RenderImages images) {
   auto const renderer = cuda::make_rays_renderer();
-  Rendering const first = renderer->render_particles(scene, scene.particles, ParticleLight::scattered, images);
+  Rendering const first =
+      renderer->render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered, images);
   std::vector<std::int64_t> const& rays = first.truth.rays_planned;
   state.counters["rays"] = static_cast<double>(first.rays) / static_cast<double>(frame_count * rays.size());
   state.counters["most_rays"] = static_cast<double>(*std::max_element(rays.begin(), rays.end()));
   std::vector<double> seconds;
   for (auto _ : state) {
     auto const start = std::chrono::steady_clock::now();
-    Rendering const rendering = renderer->render_particles(scene, scene.particles, ParticleLight::scattered, images);
+    Rendering const rendering =
+        renderer->render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered, images);
     benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     state.SetIterationTime(seconds.back());
@@ -73,7 +75,7 @@ void particles_tomographic(benchmark::State& state) {
   Setup setup = droplets_setup(double_gauss_setup(), 10e-3);
   setup.piv->laser.profile = SheetProfile::top_hat;
   setup.piv->particles.amount = 100000;
-  Scene scene = droplets_scene(setup, static_cast<std::uint64_t>(state.range(0)));
+  PlannedScene scene = droplets_scene(setup, static_cast<std::uint64_t>(state.range(0)));
   double const seconds = seconds_a_pair(state, scene, RenderImages::in_place);
   state.counters["ms_a_frame"] = 1e3 * seconds / frame_count;
   state.counters["Grays/s"] =
@@ -94,7 +96,7 @@ void particle_pairs(benchmark::State& state, ParticleScattering scattering, Rend
   setup.piv->particles.count = ParticleCount::per_pixel;
   setup.piv->particles.amount = 0.05;
   setup.piv->particles.scattering = scattering;
-  Scene scene = droplets_scene(setup, 0);
+  PlannedScene scene = droplets_scene(setup, 0);
   state.counters["pairs/s"] = 1 / seconds_a_pair(state, scene, images);
   state.counters["particles"] = static_cast<double>(scene.particles.size());
 }
