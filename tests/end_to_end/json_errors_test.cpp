@@ -67,11 +67,10 @@ TEST_F(JsonErrors, NameTheFile) {
 TEST_F(JsonErrors, CoverTheCommandLine) {
   using Arguments = std::vector<std::string>;
   for (auto const& [wrong, place] : {std::pair{Arguments{"rendre"}, "rendre"},
-                                     {Arguments{"render"}, "SETUP"},
+                                     {Arguments{"render"}, "setup"},
                                      {Arguments{"render", "a.toml", "-o", "b", "--thread", "1"}, "--thread"},
                                      {Arguments{"render", "a.toml", "-o", "b", "--threads", "many"}, "--threads"},
                                      {Arguments{"render", "a.toml", "-o", "b", "--threads", "-1"}, "--threads"},
-                                     {Arguments{"render", "a.toml", "-o"}, "--output"},
                                      {Arguments{"correlate", "a.tif", "b.tif", "--pairing", "all"}, "--pairing"},
                                      {Arguments{"info", "image", "a.tif", "--figure", "a.png"}, "--figure"}}) {
     nlohmann::json const errors = run_with_errors(wrong, 2);

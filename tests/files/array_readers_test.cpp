@@ -449,7 +449,7 @@ TEST_F(PointTableField, TecplotPointZonesAreRead) {
   EXPECT_EQ(values_of(path), numbered());
   EXPECT_EQ(open_field(path, "")->units().length, "mm");
   auto const two = write("two.dat", header + reversed_points(" ") + "ZONE T=\"b\"\n1 2 3 4\n");
-  EXPECT_THAT(open_field(two, "")->notes(), testing::Contains(Warns("ignored at two.dat:7")));
+  EXPECT_THAT(open_field(two, "")->notes(), testing::Contains(Warns("ignored at two.dat:30")));
 }
 
 TEST_F(PointTableField, TecplotBlockZonesAreRead) {

@@ -137,7 +137,7 @@ TEST(IrregularZmx, AGlassThatEndsAtContactIsTraced) {
                                       "  CURV -0.02 0 0 0 0 \"\"\n  DISZ 47", "  CURV 0.02 0 0 0 0 \"\"\n  DISZ 47");
   Lens const lens = read_lens("contact.zmx", changed(concave, "DISZ 6.0", "DISZ -2.5e-5"));
   EXPECT_NEAR(effective_length_mm(lens), 1 / (-0.02 + 2.5e-5 / 1.5 * 1e-4), 1e-10);
-  EXPECT_THAT(lens.warnings, ElementsAre(Warns("inconsistent at contact.zmx:15", HasSubstr("2.5e-05 mm"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("inconsistent at contact.zmx:22", HasSubstr("2.5e-05 mm"))));
   Ray<double> ray = parallel_ray(1);
   ASSERT_EQ(carry(lens, ray), RayStatus::alive);
   EXPECT_NEAR(ray.direction.y, 1.0 / 50, 2e-5);

@@ -225,7 +225,7 @@ TEST(Prescription, TellsOfFieldsThatAreLeftOut) {
   EXPECT_THAT(notes("heights.zmx", changed(zmx, "FTYP 0", "FTYP 1")), ElementsAre(Warns("ignored at heights.zmx:6")));
   EXPECT_THAT(notes("axis.zmx", changed(changed(zmx, "FTYP 0", "FTYP 1"), "YFLN 0 5.0", "YFLN 0 0")), IsEmpty());
   EXPECT_THAT(notes("across.zmx", changed(zmx, "YFLN", "XFLN 0 3.0\nYFLN")),
-              ElementsAre(Warns("ignored at across.zmx:12")));
+              ElementsAre(Warns("ignored at across.zmx:7")));
   EXPECT_THAT(notes("along.zmx", changed(zmx, "YFLN", "XFLN 0 0.0\nYFLN")), IsEmpty());
   EXPECT_THAT(notes("across.seq", changed(seq, "REF 2", "REF 2\nXAN 0 3")),
               ElementsAre(Warns("ignored at across.seq:7")));
