@@ -9,7 +9,7 @@ namespace gladstone::end_to_end {
 namespace {
 
 /// A Gaussian blob with a radius of 3 mm in a view of 15.3 mm, 0.16 mm per px in the flow.
-constexpr char const* blob_setup = R"(
+constexpr char const* views_of_blob = R"(
 [camera]
 pixels = [96, 96]
 pixel_pitch_um = 25.0
@@ -36,7 +36,7 @@ class Tomography : public ProgramFixture {
  protected:
   void SetUp() override {
     ProgramFixture::SetUp();
-    write("blob.toml", blob_setup);
+    write("blob.toml", views_of_blob);
     succeed({"tomography", "blob.toml", "--views", "3", "-o", "views", "--quiet"});
     for (char const* view : {"0", "1", "2"}) {
       succeed({"render", std::string("views/view_0") + view + ".toml", "-o", view, "--quiet"});
