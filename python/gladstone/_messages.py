@@ -12,7 +12,8 @@ _log = logging.getLogger("gladstone")
 
 
 def deliver(messages: list[tuple[bool, str]]) -> None:
-    """Delivers the messages (is it a warning, text) of a call of the compiled module, which calls this at its end."""
+    """Delivers the messages of a call of the compiled module, pairs (is_warning, text). The compiled module calls this
+    function at the end of each call."""
     for is_warning, text in messages:
         if not is_warning:
             _log.info(text)

@@ -83,7 +83,7 @@ nb::list oracles(std::string const& device, nb::handle progress) {
 std::string convert(VectorConversion const& conversion) {
   ConvertedVectors const converted = convert_vectors(conversion);
   if (!converted.complete)
-    spdlog::warn("{}: its header declares another number of vectors; export it again", conversion.input);
+    spdlog::warn("{}: the header declares a different number of vectors; export the file again", conversion.input);
   return converted.description.json;
 }
 

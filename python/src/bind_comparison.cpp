@@ -19,7 +19,7 @@
 namespace gladstone::python {
 namespace {
 
-/// Returns whether the vectors are known to be measured by gladstone on exactly the frames of the case.
+/// Returns whether gladstone is known to have measured the vectors on exactly the frames of the case.
 /// @throws DataError if the frames were exchanged
 bool is_own(PairCase const& one, MeasuredField const& field) {
   if (field.foreign || !field.settings) return false;
@@ -31,8 +31,8 @@ bool is_own(PairCase const& one, MeasuredField const& field) {
                     "the opposite sign; correlate case.a with case.b");
   }
   spdlog::warn(
-      "{}: the vectors {} measured on the frames of this case as they were rendered; the error of the "
-      "estimator includes that of noise",
+      "{}: the vectors {} measured on the frames of this case as they were rendered; the error of the estimator "
+      "includes the effect of noise",
       field.name, named ? "were not" : "may not have been");
   return false;
 }

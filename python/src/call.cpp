@@ -27,7 +27,7 @@ class CallMessages {
     all_.emplace_back(level, std::move(text));
   }
 
-  /// Hands the messages to Python. @pre the GIL is held
+  /// Passes the messages to Python. @pre the GIL is held
   void deliver() {
     std::vector<std::pair<spdlog::level::level_enum, std::string>> all;
     {
@@ -48,8 +48,8 @@ class CallMessages {
   std::vector<std::pair<spdlog::level::level_enum, std::string>> all_;
 };
 
-/// Messages of threads that belong to no call, such as workers of a parallel loop; the next call that ends delivers
-/// them.
+/// Returns the messages of threads that belong to no call, such as workers of a parallel loop. The call that ends next
+/// delivers them.
 CallMessages& unassigned_messages() {
   static CallMessages all;
   return all;
