@@ -15,13 +15,13 @@
 
 namespace gladstone::bench {
 
-/// Width of the demo's field at the medium [m].
+/// Width of the density field of the demo [m].
 inline constexpr double volume_width = 32.7e-3;
 inline constexpr double ambient_refractivity = 2.26e-4 * 1.225;
 
 inline void plan_step(Scene& scene) { scene = with_step(scene, determine_step_by_tracing(scene)); }
 
-/// A seeded smooth refractivity that varies along all three axes, over five to ten cells of a 64^3 grid.
+/// Returns a smooth random refractivity that varies along all three axes, over five to ten cells of a 64^3 grid.
 inline double smooth_refractivity(Vec3d p, unsigned seed) {
   double sum = 0;
   double phase = 0.1 * seed;
@@ -33,8 +33,9 @@ inline double smooth_refractivity(Vec3d p, unsigned seed) {
   return ambient_refractivity * (1 + 0.1 * sum);
 }
 
-/// Table 1 with no medium yet and `per_side`^2 dots of 3 px on a square lattice whose rays all cross the volume from
-/// face to face, or 0: its own random dots, 20 a window of 32 px; a fixed number of rays per dot.
+/// Returns the scene of Table 1 without a medium, with a fixed number of rays per dot. It has `per_side`^2 dots of 3 px
+/// on a square lattice, all of whose rays cross the volume from face to face; for 0, the random dots of Table 1, 20 per
+/// window of 32 px.
 inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
   Setup setup;
   setup.camera.columns = setup.camera.rows = pixels;
@@ -54,7 +55,7 @@ inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot, int pixels =
 
 enum class Interpolate { spline, linear };
 
-/// Table 1 through a cube of nodes^3, 32.7 mm wide, RK4 with steps of one cell.
+/// Returns the scene of Table 1 with a cube of nodes^3 nodes, 32.7 mm wide, as the medium; RK4 with steps of one cell.
 inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot,
                           Interpolate interpolate = Interpolate::spline) {
   Scene scene = table1_scene(per_side, rays_per_dot);
@@ -92,7 +93,7 @@ inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot,
   return scene;
 }
 
-/// Table 1 through the late DNS plane, stacked over 10 mm as in the demo.
+/// Returns the scene of Table 1 with the late DNS plane as the medium, extruded over 10 mm as in the demo.
 inline Scene plane_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
   Scene scene = table1_scene(per_side, rays_per_dot, pixels);
   MediumSetup& medium = scene.setup.medium;
@@ -109,7 +110,7 @@ inline Scene plane_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 
   return scene;
 }
 
-/// Table 1 with the double Gauss of data/lenses in place of its lens.
+/// Returns the setup of Table 1 with the double Gauss of data/lenses as its lens.
 inline Setup double_gauss_setup() {
   Setup setup;
   LensOptions options;
@@ -122,14 +123,14 @@ inline Setup double_gauss_setup() {
   return setup;
 }
 
-/// Point sources out of focus by 2 px, 10,000 rays each, no medium.
-/// @param dots_per_window of 32 x 32 px
+/// Returns a scene of point sources out of focus by 2 px, with 10,000 rays each and no medium.
+/// @param dots_per_window  number of dots per window of 32 x 32 px
 inline Scene points_scene(Setup setup, double dots_per_window = 1) {
   setup.target.kind = TargetKind::dots;
   setup.target.dots_per_32px_window = dots_per_window;
   setup.target.dot_diameter_px = 0;
   setup.lens.focus = Focus::distance;
-  // a defocus of 2 px: the cone's width at the sensor, d_A |z_i - z| / z, see physics of a point out of focus
+  // Defocus of 2 px: width of the cone at the sensor, d_A |z_i - z| / z.
   setup.lens.focus_distance = setup.z_b() * (1 - 0.0168);
   Scene scene = build_scene(setup);
   scene.rays_per_dot = 10000;
@@ -154,7 +155,7 @@ inline std::vector<Ray<double>> rays_of_dots(Scene const& scene, std::size_t eve
   return rays;
 }
 
-/// The rays of a scene where they enter the volume.
+/// Returns the rays of a scene at the points where they enter the volume.
 inline std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<double> const& volume) {
   std::vector<Ray<double>> rays = rays_of_dots(scene, 1, static_cast<int>(scene.rays_per_dot));
   for (Ray<double>& start : rays) {
@@ -163,11 +164,11 @@ inline std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<d
   return rays;
 }
 
-/// Rays of a rendering in one frame.
+/// Returns the number of rays of a rendering in one frame.
 inline double rays_of(Scene const& scene) {
   return static_cast<double>(scene.dots.centre.size()) * static_cast<double>(scene.rays_per_dot);
 }
-/// RK4 steps that they take, but for their slant (below 0.1 %).
+/// Returns the number of RK4 steps of these rays, neglecting their slant (below 0.1 %).
 inline double steps_of(Scene const& scene) {
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   return rays_of(scene) * std::round((box.high.z - box.low.z) / scene.step);
