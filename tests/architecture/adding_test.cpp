@@ -201,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, Adding, testing::Range(std::size_t{0}, rows().siz
                            return name;
                          });
 
-// A figure is data; what it looks like is said once, by the writer and its templates.
+// A figure is data; its appearance is defined only by the writer and its templates.
 TEST(Figures, AreDataWithoutCommandsOfGnuplot) {
   std::set<std::string> const writer{"studies/drawing/draw_figure.cpp", "studies/drawing/gnuplot.cpp"};
   std::regex const command("linecolor|linewidth [0-9{]|pointtype|\"set [a-z]+ |with (lines|points|boxes)");

@@ -10,8 +10,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// Points out of focus by 2 px, seen by the general renderer: one ray is one ray in one frame, and the light of every
-/// ray is laid down. No medium.
+/// Renders points out of focus by 2 px by the general renderer, without a medium. The light of every ray is added to
+/// the images; rays are counted in each frame.
 void render_points_by_rays(benchmark::State& state, Scene scene) {
   Progress::enable(false);
   set_thread_count(static_cast<int>(state.range(0)));

@@ -15,7 +15,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Renders again and again, scene in memory to image in memory; a ray goes through both frames.
+/// Renders repeatedly, from the scene in memory to the image in memory. A ray that is traced in both frames counts
+/// once.
 void report(benchmark::State& state, Scene scene, std::unique_ptr<Renderer> (*make)() = cuda::make_renderer) {
   Progress::enable(false);
   if (!cuda::device_state().usable) {
@@ -26,7 +27,7 @@ void report(benchmark::State& state, Scene scene, std::unique_ptr<Renderer> (*ma
   for (int warm = 0; warm < 2; ++warm) renderer->render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
   std::vector<double> seconds;
   for (auto _ : state) {
-    scene.step = std::nextafter(scene.step, 1.0);  // no table of the last round's serves again
+    scene.step = std::nextafter(scene.step, 1.0);  // a changed step prevents reuse of the previous iteration's tables
     auto const start = Clock::now();
     Rendering const rendering = renderer->render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
     benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
@@ -39,9 +40,9 @@ void report(benchmark::State& state, Scene scene, std::unique_ptr<Renderer> (*ma
   state.counters["Grays/s"] = 1e-9 * rays_of(scene) / median;
 }
 
-/// Renders a part of a scene's dots as the whole would be and, with half its step, by 65,536 rays a dot of the general
-/// renderer: how far the two are apart in truth [px] and in the images' lit pixels [grey levels of 12 bits, exposed to
-/// 90 %], both rms.
+/// Reports the accuracy of the fast renderer for a part of a scene's dots: rms differences of the truth [px] and of the
+/// lit pixels [grey levels of 12 bits, exposed to 90 %] from the general renderer with 65,536 rays per dot and half the
+/// step.
 void report_accuracy(benchmark::State& state, Scene scene) {
   constexpr std::size_t parts = 128;
   Progress::enable(false);
@@ -70,7 +71,7 @@ void report_accuracy(benchmark::State& state, Scene scene) {
   }
 }
 
-/// Case P: the baseline's first line, its volume by our seeded formula.
+/// Renders case P of data/benchmarks, whose volume is computed by a formula with random numbers.
 void case_p(benchmark::State& state) {
   Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
   report(state, scene);
@@ -104,7 +105,7 @@ void case_p_accuracy(benchmark::State& state) {
 }
 BENCHMARK(case_p_accuracy)->ArgName("rays")->Arg(16)->Arg(32)->Iterations(1);
 
-/// Case P ray by ray: the general renderer lays down the light of every ray.
+/// Renders case P ray by ray: the general renderer adds the light of every ray to the image.
 void case_p_by_rays(benchmark::State& state) {
   Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
   report(state, scene, cuda::make_rays_renderer);
@@ -117,7 +118,7 @@ BENCHMARK(case_p_by_rays)
     ->Iterations(5)
     ->Unit(benchmark::kMillisecond);
 
-/// Case T: Table 1 on 1024 x 1024 px, the late plane tiled, 20,480 random dots.
+/// Renders case T: Table 1 on 1024 x 1024 px with the late plane, continued periodically, and 20,480 random dots.
 void case_t(benchmark::State& state) {
   Scene scene = plane_scene(0, static_cast<std::uint64_t>(state.range(0)), 1024);
   report(state, scene);
@@ -130,7 +131,7 @@ void case_t_accuracy(benchmark::State& state) {
 }
 BENCHMARK(case_t_accuracy)->ArgName("rays")->Arg(16)->Arg(32)->Iterations(1);
 
-/// 1e9 rays with no field, ray by ray: 100,000 sources of 10,000 rays.
+/// Renders 1e9 rays without a field, ray by ray: 100,000 sources with 10,000 rays each.
 void no_field_by_rays(benchmark::State& state) {
   Scene scene = table1_scene(316, 10000, 1024);
   plan_step(scene);
