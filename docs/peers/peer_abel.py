@@ -64,7 +64,7 @@ def exact(n):
 
 
 def sensitivity():
-    """Displacement of the dots per negative derivative of the projection [px/(kg/m^3)]."""
+    """Returns the ratio of the dots' displacement to the negative derivative of the projection [px/(kg/m^3)]."""
     return magnification() * Z_D_MM * DALE / ((1 + DALE * AMBIENT) * PITCH_MM)
 
 

@@ -38,14 +38,14 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     """Measures the displacement from frame a to frame b by cross-correlation.
 
     a, b: images [rows, columns] of any array library (NumPy, xarray, torch, CuPy, JAX, ...), of integers or of 32- or
-        64-bit floats, in any memory layout. BOS: the reference image first. Each is copied once, to float64, in the
-        memory where it is: images of a GPU do not leave it. Pixels that are NaN, or masked by numpy.ma, are excluded
-        from the windows.
+        64-bit floats, in any memory layout. BOS: the reference image first. Each image is copied once, to float64,
+        within the same memory: images on a GPU remain on the GPU. Pixels that are NaN, or masked by numpy.ma, are
+        excluded from the windows.
     window: size of the interrogation window in each pass [px], for example [64, 32, 24, 20].
     overlap: fraction of the window that neighbouring windows share.
     uncertainty: method that estimates sigma_u and sigma_v; default: correlation statistics on a CPU, none on a GPU.
-    mask: array of bool [rows, columns] that is True at the pixels to exclude, as in numpy.ma; or tables [correlate.mask].
-    Further settings are the keys of the table [correlate]: method, subpixel, weighting, ...
+    mask: array of bool [rows, columns] that is True at the pixels to exclude, as in numpy.ma; or tables
+        [correlate.mask]. Further settings are the keys of the table [correlate]: method, subpixel, weighting, ...
 
     The vectors are equal bit by bit to those of `gladstone correlate`.
     Raises `SetupError` for settings and `DataError` for images that cannot be correlated.
@@ -78,7 +78,8 @@ def correlate_ensemble(
 ) -> Field:
     """Measures one displacement field from many pairs, by the mean of their correlation planes, on the CPU.
 
-    images: image files, frames a and b of each pair in turn, all of one size.
+    images: image files of equal size, in the order: frame a and frame b of the first pair, frame a and frame b of the
+        second pair, ...
     settings: window, overlap, method, ..., as for `correlate`; `mask` must be tables.
 
     The vectors are equal bit by bit to those of `gladstone correlate --ensemble`.

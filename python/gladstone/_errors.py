@@ -167,31 +167,31 @@ class _PlacedError(Error):
 
 
 class DataError(_PlacedError, ValueError):
-    """A file or an array that is missing, damaged or of unexpected content."""
+    """Error for a file or an array that is missing, damaged or of unexpected content."""
 
     code = "invalid_value"
 
 
 class NoValidVector(DataError):
-    """A displacement field without a single valid vector."""
+    """Error for a displacement field without a single valid vector."""
 
     code = "no_valid_vector"
 
 
 class OutOfMemory(DataError, MemoryError):
-    """A computation that needs more memory than is available."""
+    """Error for a computation that requires more memory than is available."""
 
     code = "memory"
 
 
 class OutputError(_PlacedError):
-    """A file that cannot be written."""
+    """Error for a file that cannot be written."""
 
     code = "output"
 
 
 class DeviceError(Error, RuntimeError):
-    """An accelerator that is absent, out of memory or failing."""
+    """Error for a GPU that is absent, out of memory or failing."""
 
     code = "device"
     file = line = column = key = None
@@ -204,8 +204,8 @@ class DeviceError(Error, RuntimeError):
 
 @contextmanager
 def hidden_folder(folder: str) -> Iterator[None]:
-    """Context manager that raises exceptions about files of a temporary folder without the folder. A setup in it, which
-    the user gave as an object, has no file, line and column."""
+    """Context manager that removes the name of a temporary folder from exceptions. For a setup in this folder, which
+    the user gave as an object, file, line and column are removed as well."""
 
     def inside(file: str | None) -> bool:
         return file is not None and file.startswith(folder + os.sep)

@@ -10,7 +10,7 @@ from ._errors import DataError
 
 
 def filled(values) -> np.ndarray:
-    """Returns numbers as float64, with NaN in place of masked ones."""
+    """Returns numbers as float64, with NaN in place of masked values."""
     return np.ma.filled(np.ma.asarray(values, float), np.nan)
 
 
@@ -31,7 +31,7 @@ def gpu_image(image, name: str):
 
 
 def plain(image):
-    """Returns a torch tensor without its gradient, other images as they are."""
+    """Returns a torch tensor without its gradient; other images are returned unchanged."""
     return image.detach() if getattr(image, "requires_grad", False) else image
 
 
@@ -44,7 +44,7 @@ def check_shape(image, name: str) -> None:
 def host_image(image):
     """Returns an image in host memory and native byte order, with NaN in place of masked pixels.
 
-    Arrays of a GPU are copied, others only where they are masked or have foreign bytes.
+    Arrays on a GPU are copied; other arrays are copied only if they are masked or have a different byte order.
     """
     image = plain(image)
     device = getattr(image, "__dlpack_device__", None)
@@ -62,8 +62,8 @@ def host_image(image):
 
 
 def image_array(image, name: str):
-    """Returns an image [rows, columns] as `host_image`. Raises TypeError, ValueError or DataError if it is
-    none."""
+    """Returns an image [rows, columns] in host memory, as `host_image` does. Raises TypeError, ValueError or DataError
+    if the argument is not an image."""
     if image is None or isinstance(image, (str, os.PathLike)):
         raise TypeError(
             f"{name} is {image!r}, not an image [rows, columns]; read files first, for example by tifffile.imread"

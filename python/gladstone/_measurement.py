@@ -1,5 +1,5 @@
-"""Common parts of the measurements of density, displacement and camera: their text and warnings, and the files of
-their inputs."""
+"""Common parts of the measurements of density, displacement and camera: text, warnings, and temporary files for the
+inputs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Box = Sequence[float]
 
 
 class InputFolder:
-    """Temporary folder for the input files of a measurement, deleted with its last owner."""
+    """Temporary folder for the input files of a measurement; deleted when the last object that uses it is deleted."""
 
     def __init__(self):
         self.name = tempfile.mkdtemp(prefix="gladstone_")
@@ -30,10 +30,11 @@ class InputFolder:
 
 
 class Measurement:
-    """Measurement that was computed by the libraries of gladstone."""
+    """Base class of results that the compiled part of gladstone has computed."""
 
     def __init__(self, core, inputs: InputFolder | None = None):
-        """inputs: folder of files that the measurement was computed from; `save` checks and records their hashes."""
+        """inputs: folder with the files from which the measurement was computed; `save` checks and records their
+        hashes."""
         self._core = core
         self._inputs = inputs
 

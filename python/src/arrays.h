@@ -16,12 +16,13 @@ namespace gladstone::python {
 
 namespace nb = nanobind;
 
-/// Images that any array library gives through the buffer or the DLPack protocol, in host and in GPU memory.
+/// Images that any array library passes through the buffer protocol or the DLPack protocol, in host or GPU memory.
 using ImageArray = nb::ndarray<nb::ro, nb::ndim<2>, nb::device::cpu>;
 using GpuImageArray = nb::ndarray<nb::ro, nb::ndim<2>, nb::device::cuda>;
 using NumberArray = nb::ndarray<double const, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-/// Returns the description of an image. @param samples  with the address, size and steps of the image
+/// Checks an image and completes its description by the type of its samples. @param samples address, size and steps of
+/// the image
 /// @throws DataError for images without pixels, and for samples of another type than integers of 8 to 64 bits and
 /// floats of 32 or 64 bits
 ImageSamples described_image(ImageSamples samples, nb::dlpack::dtype type, std::string const& name);
@@ -37,7 +38,7 @@ ImageSamples image_samples(Array const& array, std::string const& name) {
 /// Returns the grey levels of an image in host memory.
 Image<double> read_samples(ImageSamples const& samples);
 
-/// Returns a read-only NumPy view of memory that `owner` keeps alive.
+/// Returns a read-only NumPy view of memory that belongs to `owner`; the view keeps `owner` alive.
 template <class T>
 nb::object view_of(T const* data, std::initializer_list<std::size_t> shape, nb::handle owner) {
   return nb::cast(nb::ndarray<nb::numpy, T const>(data, shape.size(), shape.begin(), owner));

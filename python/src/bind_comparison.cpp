@@ -22,7 +22,7 @@
 namespace gladstone::python {
 namespace {
 
-/// Returns whether the vectors are known to be measured by gladstone on exactly the frames of the case.
+/// Returns whether gladstone is known to have measured the vectors on exactly the frames of the case.
 /// @throws DataError if the frames were exchanged
 bool is_own(PairCase const& one, MeasuredField const& field) {
   if (field.foreign || !field.settings) return false;

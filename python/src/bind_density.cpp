@@ -31,7 +31,8 @@ nb::object axis_mm(Reconstruction const& self, bool along_x) {
   return array_of(std::move(axis), {count});
 }
 
-/// Returns one field of the reconstruction by name, [rows, columns] or [rows, columns, 2]; None if it does not exist.
+/// Returns one quantity of the reconstruction by name, [rows, columns] or [rows, columns, 2]; None if it does not
+/// exist.
 nb::object density_array(nb::handle_t<Reconstruction> self, std::string const& name) {
   Reconstruction const& all = nb::cast<Reconstruction&>(self);
   auto const rows = static_cast<std::size_t>(all.grid.rows), columns = static_cast<std::size_t>(all.grid.columns);

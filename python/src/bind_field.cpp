@@ -122,7 +122,7 @@ Field field_of_arrays(NumberArray const& x, NumberArray const& y, NumberArray co
     if (array.shape(0) == count) return;
     throw DataError(
         ErrorCode::wrong_shape, "field",
-        fmt::format("{} has {} values where x has {}; give one for each vector", name, array.shape(0), count));
+        fmt::format("{} has {} values, but x has {}; give one value for each vector", name, array.shape(0), count));
   };
   check(y, "y");
   check(u, "u");

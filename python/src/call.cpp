@@ -31,7 +31,7 @@ class CallMessages {
     all_.push_back(std::move(message));
   }
 
-  /// Hands the messages to Python. @pre the GIL is held
+  /// Passes the messages to Python. @pre the GIL is held
   void deliver() {
     std::vector<std::variant<Warning, std::string>> all;
     {
@@ -54,8 +54,8 @@ class CallMessages {
   std::vector<std::variant<Warning, std::string>> all_;
 };
 
-/// Messages of threads that belong to no call, such as workers of a parallel loop; the next call that ends delivers
-/// them.
+/// Returns the messages of threads that belong to no call, such as workers of a parallel loop. The call that ends next
+/// delivers them.
 CallMessages& unassigned_messages() {
   static CallMessages all;
   return all;

@@ -14,7 +14,7 @@
 namespace gladstone::python {
 namespace {
 
-/// Fills a CASE folder by `write`; all files are written, or none.
+/// Writes the files of a CASE folder by calling `write`; either all files are written, or none.
 template <class Write>
 void write_folder(std::string const& folder, CaseSetup const& loaded, Write const& write) {
   refuse_case_over_inputs(folder, loaded.document.file_names());

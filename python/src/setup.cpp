@@ -20,7 +20,7 @@ namespace gladstone::python {
 namespace {
 
 /// Returns true if a later `replace` can solve a problem of this kind: a key that is still missing, or a file that does
-/// not exist yet. Mistakes in what is written are reported at once.
+/// not exist yet. All other mistakes are reported at once.
 bool may_wait(ErrorCode code) {
   switch (code) {
     case ErrorCode::invalid_value:

@@ -41,7 +41,7 @@ TEST(ErrorSummary, RmsIsBiasAndRandomTogether) {
   EXPECT_NEAR(s["rms_px"] * s["rms_px"], 0.5 * square, 1e-14);
 }
 
-// 99 exact vectors and one wrong by (3, 4): rms = sqrt(25/100/2), zero without the gross one.
+// 99 exact vectors and one wrong by (3, 4): rms = sqrt(25/100/2), without the gross error, the rms error is zero.
 TEST(ErrorSummary, KeepsGrossErrorsApart) {
   std::vector<Vec2d> const truth(100, Vec2d{});
   std::vector<Vec2d> measured(100, Vec2d{});

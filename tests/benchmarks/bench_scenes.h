@@ -14,7 +14,7 @@
 
 namespace gladstone::bench {
 
-/// Width of the demo's field at the medium [m].
+/// Width of the density field of the demo [m].
 inline constexpr double volume_width = 32.7e-3;
 inline constexpr double ambient_refractivity = 2.26e-4 * 1.225;
 
@@ -106,7 +106,7 @@ inline PlannedScene plane_scene(int per_side, std::uint64_t rays_per_dot, int pi
   return scene;
 }
 
-/// Table 1 with the double Gauss of data/lenses in place of its lens.
+/// Returns the setup of Table 1 with the double Gauss of data/lenses as its lens.
 inline Setup double_gauss_setup() {
   Setup setup;
   LensOptions options;
@@ -126,7 +126,7 @@ inline PlannedScene points_scene(Setup setup, double dots_per_window = 1) {
   setup.target.dots_per_32px_window = dots_per_window;
   setup.target.dot_diameter_px = 0;
   setup.lens.focus = Focus::distance;
-  // a defocus of 2 px: the cone's width at the sensor, d_A |z_i - z| / z, see physics of a point out of focus
+  // Defocus of 2 px: width of the cone at the sensor, d_A |z_i - z| / z.
   setup.lens.focus_distance = setup.z_b() * (1 - 0.0168);
   PlannedScene scene(build_scene(setup));
   scene.plan.rays = 10000;

@@ -11,8 +11,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// Reports the errors of vectors at least 32 px from the border: rms and bias per component, the fraction of the
-/// displacement that they reach, the number above 1 px, and the coverage of sigma.
+/// Reports the errors of vectors at least 32 px from the border: rms and bias per component, the gain (fraction of the
+/// displacement that the vectors follow), the number of errors above 1 px, and the coverage of sigma.
 void report_errors(benchmark::State& state, DisplacementField const& field, BenchmarkCase const& one) {
   int const columns = one.particles.columns, rows = one.particles.rows;
   std::vector<Vec2d> const truth = truth_at_vectors(field, one.flow);

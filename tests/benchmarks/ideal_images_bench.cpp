@@ -28,8 +28,9 @@ Rendering render_pair(Setup const& setup) {
                                          RenderImages::in_place);
 }
 
-/// Pairs of other particles every time, seeded, moved, lit and drawn, with their truth; nothing is written.
-/// @param record whether a camera of 12 bits records them, with shot and read noise
+/// Renders pairs with new particles each time: seeds, moves, illuminates and draws them, and computes their truth. No
+/// files are written.
+/// @param record  whether a camera of 12 bits records the images, with shot and read noise
 void pairs(benchmark::State& state, Setup setup, Record record) {
   Progress::enable(false);
   set_thread_count(static_cast<int>(state.range(0)));

@@ -13,7 +13,7 @@
 namespace gladstone::bench {
 namespace {
 
-/// Sobol points, sines and a square root or two: a ray as it leaves its dot.
+/// Measures the emission of rays from a dot: Sobol points, sines and square roots.
 void emit_rays(benchmark::State& state) {
   PlannedScene const scene = table1_scene(8, 64);
   RaysLaunch const launch(scene, scene.plan, SpotView{});
@@ -28,7 +28,8 @@ void emit_rays(benchmark::State& state) {
 }
 BENCHMARK(emit_rays);
 
-/// One axis of one ray's light on the sensor, at Table 1's spot.
+/// Measures the distribution of one ray's light over the pixels along one axis, for the point spread function of Table
+/// 1.
 void spread_over_pixels(benchmark::State& state) {
   GaussianSpot<double> const spot{0.275};
   int const width = 2 * spot.half_width() + 1;
@@ -44,7 +45,7 @@ void spread_over_pixels(benchmark::State& state) {
 }
 BENCHMARK(spread_over_pixels);
 
-/// One ray's light gathered around its dot.
+/// Measures the accumulation of one ray's light in the stamp of its dot.
 void deposit_spot(benchmark::State& state) {
   PlannedScene const scene = table1_scene(2, 64);
   std::optional<AiryTable> airy;
@@ -60,7 +61,7 @@ void deposit_spot(benchmark::State& state) {
 }
 BENCHMARK(deposit_spot);
 
-/// Refractivity and gradient at points one after another, each hanging on the last.
+/// Measures refractivity and gradient at successive points, each of which depends on the result at the previous one.
 template <class Medium>
 void sample_in_a_row(benchmark::State& state, Medium const& medium, Vec3d start, Vec3d stride) {
   Vec3d p = start;
@@ -88,7 +89,7 @@ void sample_plane(benchmark::State& state) {
 }
 BENCHMARK(sample_plane);
 
-/// Rays through a 64^3 volume, nothing else.
+/// Measures only the tracing of rays through a 64^3 volume.
 void trace_volume(benchmark::State& state) {
   PlannedScene const scene = volume_scene(64, 32, 64);
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
@@ -104,7 +105,7 @@ void trace_volume(benchmark::State& state) {
 }
 BENCHMARK(trace_volume);
 
-/// Traces several rays at once through a volume.
+/// Measures the tracing of several rays together through a volume.
 template <int N>
 void trace_volume_together(benchmark::State& state) {
   PlannedScene const scene = volume_scene(64, 32, 64);

@@ -39,7 +39,7 @@ void report_rendering(benchmark::State& state, PlannedScene const& scene, int th
   state.counters["steps/s"] = steps_of(scene) / fastest;
 }
 
-/// Renderings take long enough to be timed one by one, by report_rendering.
+/// Sets four iterations; each rendering takes long enough to be timed individually by report_rendering().
 void four_renderings(benchmark::internal::Benchmark* run) {
   run->UseManualTime()->Iterations(4)->Unit(benchmark::kMillisecond);
 }
@@ -72,7 +72,7 @@ void render_plane(benchmark::State& state) {
 }
 BENCHMARK(render_plane)->ArgName("threads")->Arg(1)->Arg(2)->Apply(four_renderings);
 
-/// Focused dots by their table, made anew every time.
+/// Renders dots in focus by the fast renderer; the table of deflections is computed anew each time.
 void render_focused(benchmark::State& state) {
   Progress::enable(false);
   PlannedScene scene = state.range(0) == 0 ? plane_scene(85, 32) : volume_scene(64, 85, 32);
@@ -93,7 +93,8 @@ void render_empty(benchmark::State& state) {
 }
 BENCHMARK(render_empty)->Apply(four_renderings);
 
-/// Renderer and plain loop in turn, one thread each, the same rays: `ratio` is of their steps per second.
+/// Runs the renderer and the plain loop alternately for the same rays, on one thread each; `ratio` is the ratio of
+/// their steps per second.
 void renderer_against_plain_loop(benchmark::State& state) {
   Progress::enable(false);
   PlannedScene scene = volume_scene(static_cast<int>(state.range(0)), per_side, rays_per_dot);
@@ -121,7 +122,7 @@ BENCHMARK(renderer_against_plain_loop)
     ->Iterations(5)
     ->Unit(benchmark::kMillisecond);
 
-/// One thread and two in turn.
+/// Renders alternately on one thread and on two threads.
 void two_cores_against_one(benchmark::State& state) {
   Progress::enable(false);
   PlannedScene scene = volume_scene(static_cast<int>(state.range(0)), per_side, rays_per_dot);

@@ -17,7 +17,7 @@ namespace gladstone {
 
 using BosSetup = Setup;  // testing::Test has a member named Setup
 
-/// A grey level of 16 bits if the brightest pixel of a frame is at 90 % of full scale.
+/// Returns the light of one grey level of 16 bits, if the brightest pixel of a frame is at 90 % of full scale.
 inline double grey_level(Image<double> const& frame) {
   return *std::max_element(frame.begin(), frame.end()) / (0.9 * 65535);
 }
@@ -72,7 +72,7 @@ struct FocusedDotsMethod {
 struct RaysMethod {
   static RaysRenderer on_cpu() { return {}; }
   static std::unique_ptr<Renderer> on_device() { return cuda::make_rays_renderer(); }
-  /// the device accumulates hits in integers
+  /// Tolerance of the images [levels of 16 bits]; not zero, since the device accumulates hits in integers.
   static constexpr double levels = 1;
 };
 
@@ -124,7 +124,7 @@ class OnBothDevices : public testing::Test {
     setup.medium.field = field;
     if (change) change(setup);
     std::vector<Vec2d> places = lattice(96, 6, 14);
-    // away from pixel edges, where rounding changes the footprint of a PSF
+    // Move the dots away from pixel edges, where rounding changes the footprint of a PSF.
     for (Vec2d& place : places) place += {0.0173, 0.0091};
     return scene_with_dots(setup, places, rays);
   }

@@ -203,8 +203,8 @@ TEST_F(ReconstructedDensity, OfMeasuredImagesNeedsTheirSetupAndVectors) {
   EXPECT_THAT(warnings_in(assumed), testing::Contains("assumed at medium.thickness_mm"));
 }
 
-// A gauge that lies in a mask fixes nothing; a mask that divides the vectors leaves the part without a gauge without a
-// density; a second gauge there determines it again.
+// A masked reference region does not determine the density. If a mask divides the vectors, the part without a reference
+// region has no density; a second reference region in this part determines it.
 TEST_F(ReconstructedDensity, ReportsAGaugeThatMasksCover) {
   render("case");
   succeed({"correlate", "case"});
@@ -233,8 +233,8 @@ TEST_F(ReconstructedDensity, ReportsAGaugeThatMasksCover) {
   EXPECT_TRUE(std::isfinite(density[columns - 1]));
 }
 
-// Half of the image, or a mask over its border, determines the density of an axisymmetric flow as well as the whole.
-// With the axis in the masked half, only a given axis does.
+// Half of the image, or an image with a masked border, determines the density of an axisymmetric flow as well as the
+// complete image. If the axis is in the masked half, its position must be given.
 TEST_F(ReconstructedDensity, OfAPartOfAnAxisymmetricFlow) {
   measure();
   auto const error = [&](std::string const& vectors, std::string const& axis) {

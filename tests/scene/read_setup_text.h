@@ -26,7 +26,8 @@ inline ReadSetup read_setup_text(std::string const& text) {
   return result;
 }
 
-/// Matches a function that throws a SetupError with a problem of case.toml. @param where  begin of "line:column"
+/// Matches a function that throws a SetupError with a problem of case.toml. @param where beginning of the problem's
+/// "line:column"
 inline auto refused(ErrorCode code, std::string const& where) {
   auto const is_it = [code, begin = "case.toml:" + where](SetupProblem const& one) {
     return one.code == code && one.where.starts_with(begin);

@@ -13,7 +13,7 @@
 
 namespace gladstone {
 
-/// Table 1 with a smaller sensor: f = 105 mm, f/11, Z_A = 0.75 m, Z_D = 0.25 m, pixels of 10 um.
+/// Returns the setup of Table 1 with a smaller sensor: f = 105 mm, f/11, Z_A = 0.75 m, Z_D = 0.25 m, pixels of 10 um.
 inline Setup table1_setup(int pixels) {
   Setup setup;
   setup.camera.columns = setup.camera.rows = pixels;
@@ -24,12 +24,13 @@ inline FieldSetup uniform_gradient(double along_x, double along_y, double along_
   return UniformGradient<double>{{}, {along_x, along_y, along_z}};
 }
 
-/// rho = ambient + amplitude sin(2 pi d . x / wavelength) [kg/m^3, m]
+/// Returns the field rho = ambient + amplitude sin(2 pi d . x / wavelength), with amplitude in kg/m^3 and wavelength in
+/// m.
 inline FieldSetup sinusoid(double amplitude, double wavelength, Vec2d direction = {1, 0}) {
   return Sinusoid<double>::wave(amplitude, wavelength, direction);
 }
 
-/// Returns the DNS plane of that name, scaled as in the demo: 1.225 kg/m^3, 32 mm, periodic in x and y, extruded over
+/// Returns the DNS plane of an instant, scaled as in the demo: 1.225 kg/m^3, 32 mm, periodic in x and y, extruded over
 /// the thickness.
 inline FieldSetup dns_plane(std::string const& instant) {
   FieldSetup field;

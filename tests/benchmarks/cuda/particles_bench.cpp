@@ -12,8 +12,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// Returns the setup of droplets of about 1 um, all of different diameters, in a laser sheet 750 mm before the lens at
-/// f/11, 1024 x 1024 px of 6.5 um, which see 41 mm.
+/// Returns the setup of droplets of about 1 um, all of different diameters, in a laser sheet 750 mm in front of the
+/// lens at f/11; 1024 x 1024 px of 6.5 um, whose view is 41 mm wide.
 Setup droplets_setup(Setup setup, double sheet) {
   setup.camera.columns = setup.camera.rows = 1024;
   setup.camera.pixel_pitch = 6.5e-6;
@@ -68,8 +68,8 @@ bool has_device(benchmark::State& state) {
   return device.usable;
 }
 
-/// The seed's tomographic case: 1e5 droplets in a volume 10 mm deep through the double Gauss, Mie scattering. One ray
-/// is one ray in one frame.
+/// Renders a tomographic case: 1e5 droplets in a volume 10 mm deep, seen through the double Gauss, with Mie scattering.
+/// Rays are counted in each frame.
 void particles_tomographic(benchmark::State& state) {
   if (!has_device(state)) return;
   Setup setup = droplets_setup(double_gauss_setup(), 10e-3);
@@ -89,7 +89,8 @@ BENCHMARK(particles_tomographic)
     ->Iterations(3)
     ->Unit(benchmark::kMillisecond);
 
-/// Pairs of 1 Mpx with 0.05 particles a pixel in a sheet of 1 mm through an ideal lens, as many rays as accuracy takes.
+/// Renders pairs of 1 Mpx with 0.05 particles per pixel in a sheet of 1 mm through an ideal lens, with as many rays as
+/// the accuracy requires.
 void particle_pairs(benchmark::State& state, ParticleScattering scattering, RenderImages images) {
   if (!has_device(state)) return;
   Setup setup = droplets_setup({}, 1e-3);

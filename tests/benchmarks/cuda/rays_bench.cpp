@@ -11,8 +11,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// 1e5 points out of focus by 2 px, 1e4 rays of each: the light of every ray is laid down, images stay on the card. One
-/// ray is one ray in one frame.
+/// Renders 1e5 points out of focus by 2 px with 1e4 rays each. The light of every ray is added to the images, which
+/// remain on the GPU. Rays are counted in each frame.
 void render_points_by_rays(benchmark::State& state, Setup setup) {
   Progress::enable(false);
   if (!cuda::device_state().usable) {

@@ -71,7 +71,7 @@ void report_accuracy(benchmark::State& state, PlannedScene scene) {
   }
 }
 
-/// Case P: the baseline's first line, its volume by our seeded formula.
+/// Renders case P of data/benchmarks, whose volume is computed by a formula with random numbers.
 void case_p(benchmark::State& state) {
   PlannedScene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
   report(state, scene);
@@ -105,7 +105,7 @@ void case_p_accuracy(benchmark::State& state) {
 }
 BENCHMARK(case_p_accuracy)->ArgName("rays")->Arg(16)->Arg(32)->Iterations(1);
 
-/// Case P ray by ray: the general renderer lays down the light of every ray.
+/// Renders case P ray by ray: the general renderer adds the light of every ray to the image.
 void case_p_by_rays(benchmark::State& state) {
   PlannedScene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
   report(state, scene, cuda::make_rays_renderer);
@@ -118,7 +118,7 @@ BENCHMARK(case_p_by_rays)
     ->Iterations(5)
     ->Unit(benchmark::kMillisecond);
 
-/// Case T: Table 1 on 1024 x 1024 px, the late plane tiled, 20,480 random dots.
+/// Renders case T: Table 1 on 1024 x 1024 px with the late plane, continued periodically, and 20,480 random dots.
 void case_t(benchmark::State& state) {
   PlannedScene scene = plane_scene(0, static_cast<std::uint64_t>(state.range(0)), 1024);
   report(state, scene);
@@ -131,7 +131,7 @@ void case_t_accuracy(benchmark::State& state) {
 }
 BENCHMARK(case_t_accuracy)->ArgName("rays")->Arg(16)->Arg(32)->Iterations(1);
 
-/// 1e9 rays with no field, ray by ray: 100,000 sources of 10,000 rays.
+/// Renders 1e9 rays without a field, ray by ray: 100,000 sources with 10,000 rays each.
 void no_field_by_rays(benchmark::State& state) {
   PlannedScene scene = table1_scene(316, 10000, 1024);
   plan_step(scene);
