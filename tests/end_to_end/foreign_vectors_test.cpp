@@ -284,7 +284,7 @@ TEST_F(OtherPrograms, HaveTheErrorsOfTheVectorsTheyComeFrom) {
     EXPECT_THAT(succeed(arguments), testing::HasSubstr(format)) << "printed with --quiet, too";
   }
   expect_refused({"compare", "case", "--vectors", folder + "mm.csv"}, 2,
-                 {"places in mm and displacements in m/s", "--conventions px=NUMBER,px/frame=NUMBER"});
+                 {"positions in mm and displacements in m/s", "--conventions px=NUMBER,px/frame=NUMBER"});
 }
 
 }  // namespace
