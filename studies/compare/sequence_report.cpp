@@ -18,8 +18,7 @@ void report_sequence(SequenceResult const& result, std::string const& folder) {
                  fmt::format("{} further pairs failed; sequence.json lists them", failed - most_named)});
   if (result.count(PairState::done) == 0)
     throw DataError(ErrorCode::undetermined, folder,
-                    fmt::format("none of the {} pairs could be correlated; the first: {}", result.pairs.size(),
-                                result.pairs.front().error));
+                    fmt::format("all {} pairs failed; the first: {}", result.pairs.size(), result.pairs.front().error));
   log_warnings(result.warnings);
 }
 

@@ -103,7 +103,7 @@ TEST(Verification, ReportsCauseOfDisagreement) {
   verified.simulated.waves[0].measured.value = 0.85;  // the transfer of the window then deviates most
   compare_with_formulas(verified, {});
   EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("refraction: 0.004 px, which no formula includes"));
-  EXPECT_THAT(quantity(verified, "resolution_mm").why, testing::StartsWith("window: transmits "));
+  EXPECT_THAT(quantity(verified, "resolution_mm").why, testing::StartsWith("window: amplitude transfer of "));
   EXPECT_EQ(quantity(verified, "random_px").why, "");
   verified = as_predicted(given);
   verified.simulated.bias_px.value = 0.014;
