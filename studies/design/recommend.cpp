@@ -50,7 +50,7 @@ std::vector<std::string> binding_of(DesignProblem const& problem, BranchOutcome 
   std::vector<std::string> names;
   DesignPoint<double> const bench = design_point_at(best.branch, best.solution.logarithms);
   for (Limit const& limit : complete(problem, best.branch).limits) {
-    if (excess(limit, bench) > -spare) names.push_back(limit.bound->name);
+    if (excess(limit, bench) > -spare) names.emplace_back(limit.bound->name);
   }
   for (std::size_t i = 0; i < best.branch.continuous.size(); ++i) {
     FreeChoice const& free = best.branch.continuous[i];

@@ -1,5 +1,7 @@
 #include "studies/figures/comparison_figures.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "studies/compare/comparison_kind.h"
@@ -55,7 +57,7 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
                                          std::string const& format) {
   std::vector<std::string> drawn;
   for (auto const& [name, figure] : make_comparison_figures(comparison)) {
-    drawn.push_back(folder + '/' + name + '.' + format);
+    drawn.push_back(fmt::format("{}/{}.{}", folder, name, format));
     draw_figure(figure, drawn.back());
   }
   return drawn;
