@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cuda/correlation/cuda_correlator.h"
+#include "cuda/device/copy_samples.h"
 #include "cuda/device/cuda_error.h"
 #include "cuda/device/device_frames.h"
 #include "cuda/device/runnable_code.h"
@@ -101,9 +102,14 @@ std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings)
 
 CopiedFrames copy_frames(ImageSamples const& reference, ImageSamples const& flow) {
   require_device();
-  auto copied = std::make_unique<DeviceFrames>(reference, flow);
-  std::array const not_finite{copied->not_finite(Frame::reference), copied->not_finite(Frame::flow)};
-  return {std::move(copied), not_finite};
+  auto frames = std::make_unique<DeviceFrames>(static_cast<int>(reference.columns), static_cast<int>(reference.rows));
+  DeviceArray<unsigned long long> counts(frame_count, "the images");
+  counts.zero();
+  copy_samples(reference, frames->levels(Frame::reference), counts.data());
+  copy_samples(flow, frames->levels(Frame::flow), counts.data() + 1);
+  unsigned long long not_finite[frame_count];
+  counts.download(not_finite, frame_count);  // waits until the images are copied
+  return {std::move(frames), {not_finite[0], not_finite[1]}};
 }
 
 std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const& problem) {

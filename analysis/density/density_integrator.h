@@ -18,7 +18,7 @@ enum class UnreferencedRegions { error, leave_out };
 
 struct IntegrationSettings {
   std::string method = "wls";            ///< one of integration_methods()
-  EdgeRule rule = EdgeRule::four_point;  ///< of methods without a rule of their own
+  EdgeRule rule = EdgeRule::four_point;  ///< treatment of region edges by methods that do not define one
   UnreferencedRegions unreferenced = UnreferencedRegions::error;
   /// Largest number of unknowns that is solved by sparse Cholesky factorisation; larger systems are solved by conjugate
   /// gradients.

@@ -12,8 +12,8 @@ struct NodeGrid {
   Vec2d first{};         ///< x and y of the first node [m]
   double spacing = 0.0;  ///< distance between nodes along x and y [m]
 
-  /// Returns the grid of all nodes between two corners whose coordinates are multiples of the spacing; empty if there
-  /// are none, or more than 1e5 along an axis.
+  /// Returns the grid of all nodes between two corners whose coordinates are multiples of the spacing; empty if no
+  /// multiple lies between them, or more than 1e5 do along an axis.
   static NodeGrid between(Vec2d low, Vec2d high, double spacing);
 
   std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }

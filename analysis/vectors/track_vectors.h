@@ -21,7 +21,7 @@ struct TrackVectors {
   DisplacementField field;
   std::vector<std::int64_t> tracks;  ///< number of the track of each vector; empty: the file contains no tracks
 };
-/// Reads a file of write_track_vectors(). @throws DataError if it is no such file
+/// Reads a file of write_track_vectors(). @throws DataError if it is another file
 TrackVectors read_track_vectors(std::string const& path);
 
 }  // namespace gladstone

@@ -89,11 +89,11 @@ struct Stamp {
 };
 
 /// Returns the largest stamp that fits into shared memory, and permits launches with it.
-/// @param beside  shared memory that the kernel needs in addition to the stamp [bytes]
+/// @param other_bytes  shared memory that the kernel needs in addition to the stamp [bytes]
 template <class Kernel>
-Stamp largest_stamp(Kernel* kernel, DotModel const& model, std::size_t beside) {
-  int const side = patch_side(model, most_shared_bytes(kernel) - beside);
-  Stamp const stamp{side, patch_bytes(side) + beside};
+Stamp largest_stamp(Kernel* kernel, DotModel const& model, std::size_t other_bytes) {
+  int const side = patch_side(model, most_shared_bytes(kernel) - other_bytes);
+  Stamp const stamp{side, patch_bytes(side) + other_bytes};
   allow_shared_bytes(kernel, stamp.shared);
   return stamp;
 }

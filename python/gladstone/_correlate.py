@@ -65,8 +65,8 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
             WarningText(
                 "unreliable",
                 "",
-                f"none of the {len(field)} vectors is valid; "
-                "check that both frames show one scene, with dots in every window",
+                f"all {len(field)} vectors are invalid; "
+                "check that both frames show the same scene, with dots in every window",
             )
         ]
     deliver(warnings)

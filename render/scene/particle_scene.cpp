@@ -317,7 +317,8 @@ Warnings warnings_of_particles(Scene const& scene) {
   if (census.in_view == 0) {
     warnings.push_back(
         {WarningCode::out_of_view, "particles",
-         fmt::format("none of the {} illuminated at the first pulse lies in the camera's view: the images will be "
+         fmt::format("all {} particles that are illuminated at the first pulse lie outside the camera's view: the "
+                     "images will be "
                      "empty; check particles.center_mm and volume_mm, laser.offset_mm and the position of the camera",
                      census.lit[0])});
   } else if (static_cast<double>(census.paired) < kept_pairs * static_cast<double>(census.in_view)) {

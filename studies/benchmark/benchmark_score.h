@@ -37,7 +37,7 @@ BenchmarkScore score_case(std::string const& of_case, DisplacementField const& f
                           int columns, int rows);
 
 /// Returns the median difference of the vectors of benchmark_mask() from the truth, relative to the median displacement
-/// or, if that is less, half a pixel. NaN if there is no such vector.
+/// or, if that is less, half a pixel. NaN if the mask selects no vector.
 double median_relative_error(DisplacementField const& field, std::vector<Vec2d> const& truth);
 
 /// Returns the truth at the positions of the vectors.

@@ -138,7 +138,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       log_warning(
           {WarningCode::unreliable, written,
            fmt::format(
-               "none of the {} vectors is valid; check that both frames show one scene, with dots in every window",
+               "all {} vectors are invalid; check that both frames show the same scene, with dots in every window",
                field.size())});
     }
     nlohmann::json const json{{"vectors", field.size()},

@@ -90,7 +90,7 @@ PairVectors PairCorrelation::run(PairRecord& record, std::string const& path, st
     PairVectors vectors = finished ? std::move(*finished) : correlate(std::move(frames), record, path);
     bool const any = has_any_vector(vectors.field);
     record.state = any ? PairState::done : PairState::no_valid_vector;
-    if (!any) record.error = "all of its vectors are invalid; check that both frames show one scene";
+    if (!any) record.error = "all of its vectors are invalid; check that both frames show the same scene";
     vectors.field = without_details(std::move(vectors.field));
     return vectors;
   } catch (Interrupted const&) {

@@ -28,7 +28,7 @@ struct WaveShares {
 struct SystematicCause {
   std::string name;  ///< name of the budget's term; "window" includes the estimator
   double simulated = 0;
-  double predicted = 0;  ///< error by formula; 0 if there is no formula
+  double predicted = 0;  ///< error by formula; 0 if no formula exists
 };
 
 /// Errors of the simulated measurement of a design. Repeats differ in dots, rays and noise; the systematic error is

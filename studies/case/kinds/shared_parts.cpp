@@ -64,7 +64,7 @@ void warn_of_dots_out_of_view(Scene const& scene, Warnings& warnings) {
   if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
     warn(warnings,
          {WarningCode::out_of_view, "target",
-          fmt::format("none of the {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be "
+          fmt::format("all {} dots lie outside the view of {:.4g} x {:.4g} mm about the axis: the images will be "
                       "empty; check the target's file (positions are in mm) or increase target.dots_per_32px_window",
                       scene.dots.centre.size(),
                       scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,

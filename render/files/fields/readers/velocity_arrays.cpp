@@ -165,7 +165,7 @@ class VelocityArrays final : public ArrayFile {
       if (!velocity.components[2].empty()) continue;
       notes.push_back({WarningCode::assumed, "",
                        fmt::format("\"{}\" and \"{}\" are read as a velocity whose third component is 0, since the "
-                                   "file has none of their shape",
+                                   "file has no third array of their shape",
                                    velocity.components[0], velocity.components[1])});
     }
     return notes;
