@@ -11,6 +11,6 @@ namespace gladstone {
 /// A vector is changed if, with its window shifted by half the surrounding displacement in each frame, more of its
 /// pixels are outside the frames than on non-finite pixels; if all pixels are finite, all masked vectors are changed.
 /// @param field  result of a correlator for these frames and settings
-void mark_windows_outside(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
+void mark_windows_outside(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -77,11 +77,11 @@ std::string uncertainty_caveat(CorrelationSettings const& settings);
 /// Estimates field.sigma_px by settings.uncertainty; does nothing without a method and for tracked dots. Vectors whose
 /// status is not valid get NaN: replaced vectors were not measured in their own window.
 /// @param field  result of a correlator for these frames and settings
-void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
+void estimate_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
 /// Estimates field.sigma_px if it is empty, or if the decorrelation test has invalidated vectors since. An existing
 /// estimate otherwise remains; after the test all are recomputed, because invalidated vectors must not affect the
 /// deformation of the frames.
-void complete_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
+void complete_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
 }  // namespace gladstone

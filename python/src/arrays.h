@@ -4,7 +4,6 @@
 #include <nanobind/ndarray.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <nanobind/stl/vector.h>
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -62,7 +61,7 @@ nb::list previews_of(SetupText const& setup, std::string const& device, nb::hand
 /// Renders a setup with a table [sequence] into a folder. @return contents of its summary.json
 std::string render_sequence(std::string const& setup, std::vector<std::string> const& overrides,
                             std::string const& folder, std::string const& device_name) {
-  SequenceRenderer sequence(setup, overrides);
+  SequenceRenderer sequence(read_setup_document(setup, overrides), setup);
   sequence.refuse_over_inputs(folder);
   RenderedSequence const rendered = sequence.render(*open_device(device_name).renderer, folder, true);
   for (std::string const& warning : rendered.warnings) spdlog::warn("{}", warning);

@@ -29,12 +29,14 @@ Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::strin
                 std::string const& device_name, nb::handle progress) {
   return run(
       [&] {
-        GivenImage const reference = read_array(a, "a"), flow = read_array(b, "b");
+        GivenImage reference = read_array(a, "a"), flow = read_array(b, "b");
+        HostFrames const frames(std::move(reference.image), std::move(flow.image));
         CorrelationFile const given = default_correlation(overrides);
         Backend const device = open_device(device_name);
         auto field = std::make_shared<MeasuredField>();
-        Measurement measured = correlate_frames("a", reference.image, "b", flow.image, given.settings, device);
-        if (std::string advice = locking_advice(reference.image); frames_correlate(measured.field) && !advice.empty())
+        Measurement measured = correlate_frames("a", "b", frames, given.settings, device);
+        if (std::string advice = locking_advice(frames.reference());
+            frames_correlate(measured.field) && !advice.empty())
           measured.field.warnings.push_back(std::move(advice));
         field->field = std::move(measured.field);
         field->foreign = false;
@@ -42,8 +44,8 @@ Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::strin
         field->resolved = given.resolved;
         field->device = measured.device;
         field->seconds = measured.seconds;
-        field->reference_sha256 = pixel_sha256(reference.image, reference.sample_bits);
-        field->flow_sha256 = pixel_sha256(flow.image, flow.sample_bits);
+        field->reference_sha256 = pixel_sha256(frames.reference(), reference.sample_bits);
+        field->flow_sha256 = pixel_sha256(frames.flow(), flow.sample_bits);
         return field;
       },
       progress);
@@ -81,7 +83,7 @@ Field load_field(std::string const& path, std::string const& conventions, int im
   field->foreign = file.foreign;
   field->complete = file.complete;
   field->field = apply_conventions(std::move(file.field), file.conventions, image_rows);
-  if (file.foreign || !(path.ends_with(".h5") || path.ends_with(".hdf5"))) return field;
+  if (file.foreign || !has_hdf5_ending(path)) return field;
   Hdf5Reader const measured(path);
   field->resolved = measured.attribute("setup");
   field->device = measured.attribute("device");

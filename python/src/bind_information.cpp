@@ -2,7 +2,6 @@
 #include <nanobind/stl/vector.h>
 #include <spdlog/spdlog.h>
 
-#include <cmath>
 #include <complex>
 
 #include "python/src/arrays.h"

@@ -28,7 +28,7 @@ char const* to_string(TableState state);
 
 /// Result of rendering a scene.
 struct Rendering {
-  LightPair light;                                ///< empty if images were not requested or remain on the device
+  FramePair<double> light;                        ///< empty if images were not requested or remain on the device
   std::shared_ptr<RenderedLight const> in_place;  ///< light on the device; only with RenderImages::in_place
   GroundTruth truth;
   StatusCounts statuses{};

@@ -173,10 +173,14 @@ void add_unusual_values(CaseSetup& loaded) {
 
 }  // namespace
 
-CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
+SetupDocument read_setup_document(std::string const& path, std::vector<std::string> const& overrides) {
   SetupDocument document = SetupDocument::from_file(path);
   for (auto const& assignment : overrides) document.override_key(assignment);
-  return load_case_setup(std::move(document));
+  return document;
+}
+
+CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
+  return load_case_setup(read_setup_document(path, overrides));
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {

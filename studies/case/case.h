@@ -37,6 +37,9 @@ struct CaseSetup {
   CaseSetup copy() const { return {document.copy(), setup, correlate, warnings, uncertain, input_hashes}; }
 };
 
+/// Reads a setup file and replaces keys by "KEY=VALUE" assignments. @throws SetupError
+SetupDocument read_setup_document(std::string const& path, std::vector<std::string> const& overrides);
+
 /// Reads and checks a setup.
 /// @throws SetupError with all problems
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
@@ -129,8 +132,8 @@ struct CaseOutcome : RenderedOutcome {
   double image_error_levels = not_measured;
   std::optional<TableError> table_error;  ///< error of the deflection table, if the truth was computed with one
   std::string device, reference_sha256, flow_sha256;
-  std::vector<std::string> warnings;     ///< all warnings of the case, those of its preparation first
-  Image<std::uint16_t> reference, flow;  ///< grey levels of the frames
+  std::vector<std::string> warnings;  ///< all warnings of the case, those of its preparation first
+  FramePair<std::uint16_t> levels;    ///< grey levels of the frames
 };
 
 /// Determines accuracy, grey levels and warnings of a rendered case, logs its warnings, and stores the values used for

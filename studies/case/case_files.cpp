@@ -6,7 +6,6 @@
 
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
-#include "render/files/output_file.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/cameras.h"
 #include "studies/case/rendered_sequence_folder.h"

@@ -36,12 +36,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-SetupDocument read_sequence_document(std::string const& path, std::vector<std::string> const& overrides) {
-  SetupDocument document = SetupDocument::from_file(path);
-  for (std::string const& assignment : overrides) document.override_key(assignment);
-  return document;
-}
-
 /// Hashes of input files, each computed once.
 class InputHashes {
  public:
@@ -241,8 +235,8 @@ class SequenceRendering {
 
 }  // namespace
 
-SequenceRenderer::SequenceRenderer(std::string path, std::vector<std::string> overrides)
-    : path_(std::move(path)), overrides_(std::move(overrides)), first_(path_, overrides_) {
+SequenceRenderer::SequenceRenderer(SetupDocument document, std::string path)
+    : path_(std::move(path)), document_(std::move(document)), first_(document_.copy(), path_) {
   std::optional<SequenceSetup> const sequence = first_.first_setup().sequence;
   if (!sequence)
     throw SetupError(
@@ -250,18 +244,19 @@ SequenceRenderer::SequenceRenderer(std::string path, std::vector<std::string> ov
   first_pair_ = sequence->pair;
   pair_count_ = sequence->frames - 1;
   if (sequence->consecutive) return;
-  SetupDocument document = read_sequence_document(path_, overrides_);
-  check_fields(document);
-  pair_count_ = sequence_fields(document).size();
+  SetupDocument places = document_.copy();
+  std::vector<std::string> const files = sequence_fields(places);
+  check_fields(files);
+  pair_count_ = files.size();
 }
 
-void SequenceRenderer::check_fields(SetupDocument& document) const {
+void SequenceRenderer::check_fields(std::vector<std::string> const& files) const {
   FieldSetup const& field = first_.first_setup().medium.field;
   std::optional<std::array<int, 3>> first_size;
   std::string first_name;
-  std::string const where = document.root().table("sequence").where("files");
+  std::string const where = document_.copy().root().table("sequence").where("files");
   std::vector<SetupProblem> problems;
-  for (std::string const& file : sequence_fields(document)) {
+  for (std::string const& file : files) {
     std::string problem;
     ErrorCode code = ErrorCode::inconsistent;
     try {
@@ -290,9 +285,9 @@ void SequenceRenderer::check_fields(SetupDocument& document) const {
 }
 
 SetupRenderer SequenceRenderer::pair_setup(std::size_t number) const {
-  std::vector<std::string> overrides = overrides_;
-  overrides.push_back(fmt::format("sequence.pair={}", number));
-  return SetupRenderer(path_, overrides);
+  SetupDocument document = document_.copy();
+  document.override_key(fmt::format("sequence.pair={}", number));
+  return {std::move(document), path_};
 }
 
 void SequenceRenderer::refuse_over_inputs(std::string const& folder) const {

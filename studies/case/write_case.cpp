@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -14,7 +13,6 @@
 #include "render/files/stop_point.h"
 #include "render/focused_dots/table_error.h"
 #include "render/method.h"
-#include "render/planning.h"
 #include "render/rays/sample_images.h"
 #include "render/render.h"
 #include "render/scene/particle_scene.h"
@@ -153,10 +151,9 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   if (by_table || prepared.rays.method != RenderMethod::automatic) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));
   }
-  outcome.reference = grey_levels(frames.levels->reference());
-  outcome.flow = grey_levels(frames.levels->flow());
-  outcome.reference_sha256 = pixel_sha256(outcome.reference);
-  outcome.flow_sha256 = pixel_sha256(outcome.flow);
+  outcome.levels = {grey_levels(frames.levels->reference()), grey_levels(frames.levels->flow())};
+  outcome.reference_sha256 = pixel_sha256(outcome.levels.reference);
+  outcome.flow_sha256 = pixel_sha256(outcome.levels.flow);
   static_cast<RenderedOutcome&>(outcome) = warn_of_rendering(warnings, prepared, rendered, frames);
   outcome.image_error_levels = image_error_by_rays(prepared.scene, rendering, rendered.exposure_e);
   // If dots at side faces are traced by rays, both errors are theirs, and one warning suffices
@@ -176,8 +173,8 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
 
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
-  write_tiff(place(case_file::reference), outcome.reference, metadata);
-  write_tiff(place(case_file::flow), outcome.flow, metadata);
+  write_tiff(place(case_file::reference), outcome.levels.reference, metadata);
+  write_tiff(place(case_file::flow), outcome.levels.flow, metadata);
   FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, outcome.device};
   origin.sources.add_known("reference", outcome.reference_sha256);
   origin.sources.add_known("flow", outcome.flow_sha256);

@@ -116,12 +116,13 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       bool const one_file = arguments->inputs.size() == 1;
       std::string const a = one_file ? inputs[0] + " (page 1)" : inputs[0];
       std::string const b = one_file ? inputs[0] + " (page 2)" : inputs[1];
-      auto const [reference, flow] =
+      HostFrames const frames = std::make_from_tuple<HostFrames>(
           one_file ? read_frames(inputs[0], sources)
-                   : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)};
+                   : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)});
       add_preparation(other.settings, sources);
-      measurement = correlate_frames(a, reference, b, flow, other.settings, device);
-      if (std::string advice = locking_advice(reference); frames_correlate(measurement.field) && !advice.empty())
+      measurement = correlate_frames(a, b, frames, other.settings, device);
+      if (std::string advice = locking_advice(frames.reference());
+          frames_correlate(measurement.field) && !advice.empty())
         measurement.field.warnings.push_back(std::move(advice));
       warn_of_exchanged_frames(measurement.field, sources);
       write_vectors(written, measurement.field,

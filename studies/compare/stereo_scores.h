@@ -3,7 +3,6 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "analysis/vectors/displacement_field.h"
 #include "studies/compare/stereo.h"

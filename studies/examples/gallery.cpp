@@ -73,7 +73,8 @@ std::string run_gallery(std::string const& folder, Backend const& device) {
   for (GalleryPicture const& picture : all) {
     spdlog::info("{}: {}", picture.name, picture.title);
     std::string const place = (fs::path(folder) / picture.name).string();
-    SetupRenderer setup((fs::path(cases) / (std::string(picture.name) + ".toml")).string(), {});
+    std::string const path = (fs::path(cases) / (std::string(picture.name) + ".toml")).string();
+    SetupRenderer setup(SetupDocument::from_file(path), path);
     setup.refuse_over_inputs(place);
     setup.render(*device.renderer, place);
     images.push_back(read_image(in_case(place, case_file::reference)));

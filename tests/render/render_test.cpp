@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "render/planning.h"
 #include "tests/scene/piv_setups.h"

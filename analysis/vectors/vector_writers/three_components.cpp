@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
-#include "render/base/error.h"
 
 namespace gladstone {
 namespace {
