@@ -138,8 +138,9 @@ fuzz:  ## run all file readers on generated files under sanitizers, into out/fuz
 soak: build  ## disturb the program (kill, full disk, replaced inputs) and check the results: SOAK_RUNS=300, SOAK_SEED=1
 	python3 -B tests/soak/soak.py --program $(BUILD)/bin/gladstone --seed $(SOAK_SEED) --runs $(SOAK_RUNS)
 
-check-long: build  ## simulate ten recommended designs with eight new seeds each, a minute each: SETS=10 SEEDS=8; run the notebooks, and 10,000 renderings for leaks
+check-long: build  ## simulate ten recommended designs with eight new seeds each, a minute each: SETS=10 SEEDS=8; run the notebooks, and 10,000 renderings for leaks; compare all results with those of another program: OLD=PROGRAM
 	python3 -B tests/long/designs.py --program $(BUILD)/bin/gladstone --sets $(or $(SETS),10) --seeds $(or $(SEEDS),8)
+	[ -z "$(OLD)" ] || python3 -B tests/long/compare_programs.py $(OLD) $(BUILD)/bin/gladstone
 	@[ -d build/python/site ] || { echo 'check-long: notebooks and the test of leaks were left out; they require "make python"' >&2; exit 1; }
 	$(VENV)/bin/pip install -q $(NOTEBOOK_PACKAGES)
 	PYTHONPATH=$(CURDIR)/build/python/site $(VENV)/bin/python -B tests/long/notebooks.py docs/notebooks/*.ipynb

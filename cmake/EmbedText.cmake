@@ -1,6 +1,6 @@
 # embed_text(target name file): embeds a text file into a target as gladstone::embedded::NAME, a std::string_view
-# (declared in studies/report/embedded_text.h or studies/drawing/templates.h). CMake reads the file when it runs, and
-# runs again when the file changes.
+# (declared in embedded_text.h or templates.h of its room). CMake reads the file when it runs, and runs again when the
+# file changes.
 function(embed_text target name file)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(READ ${file} hexadecimal HEX)

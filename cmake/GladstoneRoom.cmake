@@ -2,9 +2,17 @@
 # would take longer to compile and to run.
 set(GLADSTONE_READING_ROOMS base setup files light optics scene vectors preparation)
 
+# The rooms of render/ below the renderers, the renderers, and the rooms of analysis/.
+set(GLADSTONE_SCENE_ROOMS base setup files light medium optics sensor scene)
+set(GLADSTONE_RENDERERS rays focused_dots ideal_images)
+set(GLADSTONE_ANALYSIS_ROOMS vectors preparation correlation uncertainty tracking calibration errors density stereo
+    tomography)
+
 # gladstone_room(name DEPENDS rooms... PUBLIC libraries... PRIVATE libraries...)
-# A room is one library of the .cpp files of its folder (except main.cpp); its alias is gladstone::name.
-# A room that consists of headers is an INTERFACE library.
+# A room is one library of the .cpp files (with CUDA also the .cu files) of its folder, except main.cpp; its alias is
+# gladstone::name. A room that consists of headers is an INTERFACE library. DEPENDS lists the rooms that the room may
+# include; a test compares it with the table of includes (tests/architecture/include_arrows.cpp).
+# WITHOUT_FOLDERS: subfolders are rooms of their own.
 function(gladstone_room name)
   cmake_parse_arguments(ROOM "WITHOUT_FOLDERS" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
   set(glob GLOB_RECURSE)
@@ -13,9 +21,16 @@ function(gladstone_room name)
   endif()
   file(${glob} sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  set(kernels "")
+  if(GLADSTONE_CUDA_VERSION)
+    file(${glob} kernels CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cu)
+  endif()
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE place)
+  string(REPLACE ";" " " described "${name};${place};${ROOM_DEPENDS}")
+  set_property(GLOBAL APPEND PROPERTY GLADSTONE_ROOM_DESCRIPTIONS "${described}")
   list(TRANSFORM ROOM_DEPENDS PREPEND gladstone::)
-  if(sources)
-    add_library(gladstone_${name} STATIC ${sources})
+  if(sources OR kernels)
+    add_library(gladstone_${name} STATIC ${sources} ${kernels})
     set(scope PUBLIC)
     target_link_libraries(gladstone_${name} PRIVATE ${ROOM_PRIVATE} $<BUILD_INTERFACE:gladstone_flags>)
     set_target_properties(gladstone_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD_MODE GROUP)
@@ -25,6 +40,9 @@ function(gladstone_room name)
       string(REPLACE "/" "_" group ${folder})
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endforeach()
+    if(kernels)
+      target_link_libraries(gladstone_${name} PRIVATE CUDA::cudart_static)
+    endif()
     if(GLADSTONE_FUZZ AND name IN_LIST GLADSTONE_READING_ROOMS)
       gladstone_watched(gladstone_${name})
     endif()

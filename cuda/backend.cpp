@@ -5,9 +5,11 @@
 
 #include <atomic>
 #include <string>
+#include <utility>
 
 #include "cuda/correlation/cuda_correlator.h"
 #include "cuda/device/cuda_error.h"
+#include "cuda/device/device_frames.h"
 #include "cuda/device/runnable_code.h"
 #include "cuda/focused_dots/cuda_renderer.h"
 #include "cuda/ideal_images/cuda_image_drawer.h"
@@ -18,8 +20,9 @@
 namespace gladstone::cuda {
 namespace {
 
-/// Tests the device until it is usable, and not again: the properties of a device take a millisecond.
-/// @throws DeviceError if no device is usable
+/// Tests whether a device is usable. A successful test is not repeated, since reading the properties of a device takes
+/// a millisecond.
+/// @throws DeviceError  if no device is usable
 void require_device() {
   static std::atomic<bool> usable = false;
   if (usable) return;
@@ -94,6 +97,13 @@ std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings)
     throw DeviceError("correlate." + missing + " is computed on the CPU only");
   require_device();
   return std::make_unique<CudaCorrelator>(settings);
+}
+
+CopiedFrames copy_frames(ImageSamples const& reference, ImageSamples const& flow) {
+  require_device();
+  auto copied = std::make_unique<DeviceFrames>(reference, flow);
+  std::array const not_finite{copied->not_finite(Frame::reference), copied->not_finite(Frame::flow)};
+  return {std::move(copied), not_finite};
 }
 
 std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const& problem) {

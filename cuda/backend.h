@@ -5,6 +5,7 @@
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/tomography/sart_volume.h"
+#include "render/base/image_samples.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/ideal_images/pair_batch.h"
 #include "render/scene/renderer.h"
@@ -50,6 +51,10 @@ std::unique_ptr<PairBatchRenderer> make_pair_batches(std::vector<OwnedPairModel>
 /// Creates the correlator on the GPU, for settings that gladstone::missing_on_gpu() does not list.
 /// @throws DeviceError if no device is usable or a setting is not supported
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
+
+/// Copies images of equal size that another library stores on the first device, on the default stream, and waits for
+/// it. @throws DeviceError if no device is usable
+CopiedFrames copy_frames(ImageSamples const& reference, ImageSamples const& flow);
 
 /// Creates the volume of a tomographic reconstruction on the GPU. @throws DeviceError if no device is usable
 std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const& problem);

@@ -27,6 +27,8 @@ std::unique_ptr<PairBatchRenderer> make_pair_batches(std::vector<OwnedPairModel>
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const&) { throw DeviceError(device_state().text); }
 
+CopiedFrames copy_frames(ImageSamples const&, ImageSamples const&) { throw DeviceError(device_state().text); }
+
 std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const&) {
   throw DeviceError(device_state().text);
 }

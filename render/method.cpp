@@ -8,8 +8,9 @@
 
 namespace gladstone {
 
-RenderMethod resolve_render_method(Scene const& scene) {
-  RenderMethod const wanted = scene.setup.render.method;
+RenderMethod resolve_render_method(Scene const& scene, RenderPlan const& plan) {
+  bool const planned = plan.method != RenderMethod::automatic;
+  RenderMethod const wanted = planned ? plan.method : scene.setup.render.method;
   if (wanted != RenderMethod::automatic) return wanted;
   if (scene.setup.has_ideal_particles()) return RenderMethod::formula;
   return focused_dots(scene) ? RenderMethod::focused_dots : RenderMethod::rays;
@@ -28,8 +29,8 @@ char const* to_string(RenderMethod method) {
   return "rays";
 }
 
-FocusedDots require_focused_dots(Scene const& scene) {
-  std::optional<FocusedDots> const dots = focused_dots(scene);
+FocusedDots require_focused_dots(Scene const& scene, RenderPlan const& plan) {
+  std::optional<FocusedDots> const dots = focused_dots(scene, plan);
   if (dots) return *dots;
   throw DataError(ErrorCode::invalid_value, KeyPath{"render.method"},
                   "\"focused_dots\" is not valid here, since " + std::string(to_string(table_state(scene))) +

@@ -6,21 +6,25 @@
 
 namespace gladstone {
 
-/// Determines the integration step of a scene. With two media, the shorter of both steps.
-IntegrationStep choose_step(Scene const& scene);
-/// Returns the scene with the step of choose_step().
-Scene with_chosen_step(Scene scene);
-/// Determines the ray budget. For "auto" it selects the fast renderer if that supports the scene (focused_dots()), with
-/// the number of rays and the fineness by which its deflection table meets the accuracy goals, or comes closest.
-/// Otherwise the general renderer adds rays until the goals or its budget are reached.
-/// @param scene  with its step
-RayBudget choose_ray_budget(Scene const& scene);
-/// Estimates the processor time for rendering a scene with its step and its (largest) number of rays: rays, deflection
+/// Returns a plan with the integration step of a scene and one ray per source: sufficient for maps of the field and for
+/// given rays. With two media, the step is the shorter of both.
+/// @throws DataError as with_step()
+RenderPlan plan_step(Scene const& scene);
+
+/// Chooses integration step, method and number of rays of a scene where its setup leaves them open. For "auto" it
+/// selects the fast renderer if that supports the scene (focused_dots()), with the number of rays and the fineness by
+/// which its deflection table meets the accuracy goals, or comes closest. Otherwise the general renderer adds rays
+/// until the goals or its budget are reached.
+/// @param step  step of the same scene, if known; null: chosen
+/// @throws DataError if the scene does not meet the conditions of its method
+RenderPlan plan_rendering(Scene const& scene, IntegrationStep const* step = nullptr);
+
+/// Estimates the processor time for rendering a scene by a plan with its (largest) number of rays: rays, deflection
 /// table and small-angle theory [s].
-double render_seconds(Scene const& scene, RenderTheory theory);
+double render_seconds(Scene const& scene, RenderPlan const& plan, RenderTheory theory);
 /// Maps density, gradient and small-angle theory (Eq. 9) of the scene's field over the view.
-FieldMap field_in_view(Scene const& scene, int spacing_px);
+FieldMap field_in_view(Scene const& scene, RenderPlan const& plan, int spacing_px);
 /// Maps the strain of the displacement field over the view.
-StrainMap strain_in_view(Scene const& scene);
+StrainMap strain_in_view(Scene const& scene, RenderPlan const& plan);
 
 }  // namespace gladstone

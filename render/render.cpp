@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/accuracy.h"
 #include "render/base/contracts.h"
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/ideal_images/ideal_images.h"
@@ -12,6 +13,7 @@
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/rays/trace_particles.h"
+#include "render/scene/particle_scene.h"
 #include "render/scene/side_faces.h"
 #include "render/scene/source_sample.h"
 #include "render/scene/two_media.h"
@@ -29,7 +31,7 @@ std::vector<std::size_t> indices_without(std::size_t count, std::vector<std::siz
 }
 
 /// Adds the rendering of the dots with the given indices to that of all dots.
-/// @param sign  of their light: dark dots are subtracted from white paper
+/// @param sign  sign of the added light: -1 for dark dots, whose light is subtracted from white paper
 void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& indices, double sign) {
   for (std::size_t i = 0; i < indices.size(); ++i) all.truth.copy(some.truth, i, indices[i]);
   all.rays += some.rays;
@@ -44,7 +46,7 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
   add(all.light.flow, some.light.flow);
 }
 
-/// Changes a rendering of the dots with the given indices to one of `count` dots. The others have no truth.
+/// Extends a rendering of the dots with the given indices to `count` dots. The others get no true displacement.
 void widen(Rendering& rendering, std::vector<std::size_t> const& indices, std::size_t count) {
   GroundTruth all;
   all.resize(count);
@@ -53,39 +55,49 @@ void widen(Rendering& rendering, std::vector<std::size_t> const& indices, std::s
   for (std::size_t& dot : rendering.left) dot = indices[dot];
 }
 
+/// Returns a plan with the method by which it renders a scene.
+RenderPlan with_method(Scene const& scene, RenderPlan plan) {
+  plan.method = resolve_render_method(scene, plan);
+  return plan;
+}
+
 }  // namespace
 
 Device::Device(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays,
                std::unique_ptr<ImageDrawer> drawer)
     : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)), drawer_(std::move(drawer)) {}
 
-Rendering Device::render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
-                                   RenderImages images) {
-  if (scene.second_medium) return render_in_two_media(*this, scene, particles, light, images);
-  if (resolve_render_method(scene) == RenderMethod::formula) {
+Rendering Device::render_particles(Scene const& scene, RenderPlan const& given, Particles const& particles,
+                                   ParticleLight light, RenderImages images) {
+  if (scene.second_medium) return render_in_two_media(*this, scene, given, particles, light, images);
+  RenderPlan const plan = with_method(scene, given);
+  if (plan.method == RenderMethod::formula) {
     auto const ideal = ideal_images(scene);
     GLADSTONE_EXPECTS(ideal);
     Rendering rendering = render_ideal_images(*ideal, particles, light, images, drawer_.get());
     rendering.device = drawer_ ? drawer_->device() : "cpu";
+    rendering.plan = plan;
     return rendering;
   }
   bool const as_lit = light == ParticleLight::scattered && images != RenderImages::no;
-  Rendering rendering =
-      as_lit ? render_near_view(scene, particles, images) : rays_->render_particles(scene, particles, light, images);
+  Rendering rendering = as_lit ? render_near_view(scene, plan, particles, images)
+                               : rays_->render_particles(scene, plan, particles, light, images);
+  rendering.plan = plan;
   rendering.device = device();
   return rendering;
 }
 
-Rendering Device::render_near_view(Scene const& scene, Particles const& particles, RenderImages images) {
-  std::vector<char> const near = particles_near_view(scene, particles);
+Rendering Device::render_near_view(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                                   RenderImages images) {
+  std::vector<char> const near = particles_near_view(scene, plan, particles);
   if (std::find(near.begin(), near.end(), 0) == near.end()) {
-    return rays_->render_particles(scene, particles, ParticleLight::scattered, images);
+    return rays_->render_particles(scene, plan, particles, ParticleLight::scattered, images);
   }
   Particles lit = particles;  // particles without light are not traced
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (near[i] == 0) lit.photons[0][i] = lit.photons[1][i] = 0;
   }
-  Rendering rendering = rays_->render_particles(scene, lit, ParticleLight::scattered, images);
+  Rendering rendering = rays_->render_particles(scene, plan, lit, ParticleLight::scattered, images);
   std::vector<std::int64_t>& planned = rendering.truth.rays_planned;
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (near[i] == 0) planned[i] = 0;
@@ -94,63 +106,70 @@ Rendering Device::render_near_view(Scene const& scene, Particles const& particle
   return rendering;
 }
 
-Rendering Device::render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
-  RenderMethod const method = resolve_render_method(scene);
-  Rendering rendering = method == RenderMethod::focused_dots ? render_focused(scene, sources, images, theory)
-                                                             : rays_->render(scene, sources, images, theory);
-  rendering.method = method;
+Rendering Device::render(Scene const& scene, RenderPlan const& given, DotPattern const& sources, RenderImages images,
+                         RenderTheory theory) {
+  RenderPlan const plan = with_method(scene, given);
+  Rendering rendering = plan.method == RenderMethod::focused_dots ? render_focused(scene, plan, sources, images, theory)
+                                                                  : rays_->render(scene, plan, sources, images, theory);
+  rendering.plan = plan;
   rendering.device = device();
   return rendering;
 }
 
-Rendering Device::render_focused(Scene const& scene, DotPattern const& sources, RenderImages images,
-                                 RenderTheory theory) {
+Rendering Device::render_focused(Scene const& scene, RenderPlan const& plan, DotPattern const& sources,
+                                 RenderImages images, RenderTheory theory) {
   require_focused_dots(scene);
   std::size_t const count = sources.centre.size();
-  std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, sources);
+  std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, plan, sources);
   bool const some = !at_faces.empty() && at_faces.size() < count;
   Rendering all;
   if (some) {
     std::vector<std::size_t> const supported = indices_without(count, at_faces);
-    all = focused_dots_->render(scene, select_dots(sources, supported), images, theory);
+    all = focused_dots_->render(scene, plan, select_dots(sources, supported), images, theory);
     widen(all, supported, count);
     all.left.insert(all.left.end(), at_faces.begin(), at_faces.end());
     std::sort(all.left.begin(), all.left.end());
   } else {
-    all = focused_dots_->render(scene, sources, images, theory);
+    all = focused_dots_->render(scene, plan, sources, images, theory);
   }
   if (all.left.empty()) return all;
   if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
   double const sign = scene.setup.target.polarity == Polarity::dark ? -1 : 1;
-  merge(all, render_others(scene, select_dots(sources, all.left), images, theory), all.left, sign);
+  merge(all, render_others(scene, plan, select_dots(sources, all.left), images, theory), all.left, sign);
   if (images == RenderImages::in_place) all.store_light_in_place();
   return all;
 }
 
-Rendering Device::render_others(Scene const& scene, DotPattern dots, RenderImages images, RenderTheory theory) {
-  Scene by_rays = scene;
-  by_rays.dots = std::move(dots);
-  by_rays.setup.target.polarity = Polarity::bright;
+Rendering Device::render_others(Scene const& scene, RenderPlan plan, DotPattern const& dots, RenderImages images,
+                                RenderTheory theory) {
   if (!scene.setup.render.rays_per_dot) {
     if (images == RenderImages::no) {
-      by_rays.adaptive_criteria = AdaptiveRayCriteria{};  // of the truth alone
-    } else if (!scene.adaptive_criteria) {
-      by_rays.adaptive_criteria = determine_adaptive_criteria(scene);
+      plan.adaptive_criteria = AdaptiveRayCriteria{};  // of the truth alone
+    } else if (!plan.adaptive_criteria) {
+      plan.adaptive_criteria = determine_adaptive_criteria(scene, plan);
     }
-    by_rays.rays_per_dot = max_rays_per_source(by_rays);
+    plan.rays = max_rays_per_source(scene, plan);
   }
-  return rays_->render(by_rays, by_rays.dots, images == RenderImages::no ? images : RenderImages::yes, theory);
+  Scene bright = scene;
+  bright.setup.target.polarity = Polarity::bright;
+  return rays_->render(bright, plan, dots, images == RenderImages::no ? images : RenderImages::yes, theory);
 }
 
 Device cpu() { return {std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()}; }
 
-Rendering render_planned(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory) {
-  return scene.setup.experiment().sources.render(scene, renderer, images, theory);
+Rendering render(Scene const& scene, RenderPlan const& plan, Renderer& device, RenderImages images,
+                 RenderTheory theory) {
+  if (scene.setup.experiment().sources.on_target) return device.render(scene, plan, scene.dots, images, theory);
+  return device.render_particles(scene, plan, scene.particles, ParticleLight::scattered, images);
 }
 
-Rendering render(Scene const& scene, Device& device, RenderImages images, RenderTheory theory) {
-  Scene const with_step = with_chosen_step(scene);
-  return render_planned(with_rays(with_step, choose_ray_budget(with_step)), device, images, theory);
+Rendering render(Scene const& scene, Renderer& device, RenderImages images, RenderTheory theory) {
+  Rendering rendering = render(scene, plan_rendering(scene), device, images, theory);
+  if (images == RenderImages::no) return rendering;
+  double const exposure_e = rendering.in_place ? choose_exposure(scene, *rendering.in_place)
+                                               : choose_exposure(scene, HostLight(rendering.light));
+  rendering.accuracy = measure_accuracy(scene, rendering.plan, rendering.truth, exposure_e);
+  return rendering;
 }
 
 }  // namespace gladstone

@@ -113,7 +113,7 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
   }
   print_error(
       fmt::format("gladstone: {} See gladstone {}--help", message.ends_with('?') ? message : message + '.', path));
-  if (json) fmt::print("{}\n", json_text(argument_error_json(message, bad_input)));
+  if (json) fmt::print("{}\n", json_text(argument_error_json(name, message, bad_input)));
   return bad_input;
 }
 
@@ -155,7 +155,8 @@ int run(int argc, char** argv, GlobalOptions& options) {
     return ok;
   } catch (CLI::ParseError const& error) {
     if (app.exit(error) == 0) return ok;
-    if (wants_json(argc, argv)) fmt::print("{}\n", json_text(argument_error_json(describe_problem(error), bad_input)));
+    if (wants_json(argc, argv))
+      fmt::print("{}\n", json_text(argument_error_json(find_argument(error), describe_problem(error), bad_input)));
     return bad_input;
   }
   auto const parsed_one =

@@ -13,20 +13,20 @@
 namespace gladstone {
 namespace {
 
-// minimum noise assumed for images of whole grey levels, whose rounding may hide the noise
+// minimum standard deviation of the noise, assumed for images of integer grey levels, whose rounding may hide the noise
 constexpr double rounding = 0.5;
 constexpr int ring_px = 5;      // width of the ring in which the background is fitted
 constexpr int least_ring = 24;  // minimum number of background pixels for a plane fit
-constexpr double wide = 3;      // radius of the surroundings for a quadratic fit, in outer radii of the ring
-// maximum error of a quadratic fit at a dot's centre, and of its slope across the window, in standard deviations of the
-// noise of a pixel
+constexpr double wide = 3;  // radius of the region for a quadratic fit of the background, in outer radii of the ring
+// maximum error of a quadratic fit at a dot's centre, and maximum error that its slope causes across the window, both
+// in standard deviations of the noise of a pixel
 constexpr double most_error = 0.25;
 constexpr double most_residual = 3;  // maximum rms residual of a quadratic fit, in standard deviations of the noise
-constexpr int reach_px = 4;          // distance to which light of a region that is not a dot spreads beyond the region
+constexpr int reach_px = 4;          // distance to which light spreads beyond a region that is not a dot [px]
 
 enum class Dots { bright, dark };
 
-/// Image with its background and noise.
+/// Image with subtracted background, and its noise.
 struct LitPicture {
   Image<double> const& raw;
   Image<double> background;
@@ -60,7 +60,7 @@ LitPicture lit_picture(Image<double> const& picture) {
     for (double& level : over) level = -level;
   }
   lit.noise = 1.4826 * median_size(over);  // standard deviation of normal noise from the median
-  // For whole grey levels, rounding may hide all noise.
+  // If all grey levels are integers, rounding may hide all noise.
   if (std::all_of(picture.begin(), picture.end(), [](double level) { return level == std::floor(level); })) {
     lit.noise = std::max(lit.noise, rounding);
   }
@@ -86,7 +86,7 @@ struct LevelSurface {
   Vec2d about{};
   double level = 0;
   Vec2d slope{};
-  double xx = 0, xy = 0, yy = 0;  ///< coefficients of the second order
+  double xx = 0, xy = 0, yy = 0;  ///< coefficients of the second-order terms
 
   double at(double column, double row) const {
     double const x = column - about.x, y = row - about.y;
@@ -140,7 +140,8 @@ FitSums<terms> sum_background(LitPicture const& lit, cv::Mat const& free, Vec2d 
 }
 
 /// Fits a quadratic polynomial to the background in the wider surroundings of a dot.
-/// @return nullopt if the background pixels do not determine it at the dot, or if it does not follow them
+/// @return nullopt if the background pixels do not determine the polynomial at the dot, or if its residual at these
+///         pixels is too large
 std::optional<LevelSurface> quadratic_background(LitPicture const& lit, cv::Mat const& free, DotRegion const& dot) {
   constexpr int terms = 6;
   double const reach = wide * (dot.window + 1 + ring_px);

@@ -9,12 +9,13 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_contrast = 8;      // minimum ratio of the dots' height to the noise
-constexpr double threshold_share = 0.25;  // threshold relative to the dots' height
-constexpr double least_area = 5;          // minimum area [px^2]
-constexpr double blur_px = 4;             // distance to which a dot's light spreads beyond the threshold
-constexpr double area_factor = 3;         // maximum ratio of areas, caused by perspective and blur
-constexpr double axes_factor = 1.5;       // maximum ratio of a region's axis ratio to the median one
+constexpr double least_contrast = 8;  // minimum ratio of the dots' peak height to the standard deviation of the noise
+constexpr double threshold_share = 0.25;  // threshold of the region search relative to the dots' peak height
+constexpr double least_area = 5;          // minimum area of a dot's region [px^2]
+constexpr double blur_px = 4;             // distance to which a dot's light spreads beyond the contour at the threshold
+constexpr double area_factor = 3;    // maximum ratio of a dot's area to the median area, or of the median to the dot's;
+                                     // perspective and blur cause differences
+constexpr double axes_factor = 1.5;  // maximum ratio of a region's axis ratio to the median one
 // minimum ratio of a region's area to that of the ellipse of its second moments
 constexpr double least_fill = 0.9;
 
@@ -103,8 +104,8 @@ double median_of(std::vector<Shape> const& shapes, Value const& value) {
   return *middle;
 }
 
-/// Compares size and shape with the medians. Tolerances widen with the inverse diameter, since the shape of a small
-/// region depends on the pixel grid.
+/// Returns true if the size and the shape of a region are close to the medians over all regions. The tolerances
+/// increase with the inverse of the diameter, since the shape of a small region depends on the pixel grid.
 bool looks_like(Shape const& shape, double usual_area, double usual_axes) {
   double const one_pixel = 1 / std::sqrt(shape.area);
   double const area = shape.area / usual_area, axes = shape.axes / usual_axes, most = axes_factor + 2 * one_pixel;

@@ -7,14 +7,14 @@
 
 namespace gladstone {
 
-/// Standard deviation of the Gaussian filter applied before the region search; measurements use the unfiltered image
-/// [px].
+/// Standard deviation of the Gaussian filter applied before the region search [px]. Centroids are measured in the
+/// unfiltered image.
 inline constexpr double dot_smoothing_px = 0.8;
 
 /// Connected region of an image with the size and shape of a dot.
 struct DotRegion {
-  Vec2d centre{};     ///< centre of the region above half the dot's height [px]
-  double radius = 0;  ///< radius of the disc with the area of the region above half the dot's height [px]
+  Vec2d centre{};     ///< centre of the region in which the level exceeds half the dot's peak height [px]
+  double radius = 0;  ///< radius of a disc with the same area as that region [px]
   double window = 0;  ///< radius of the window in which the centroid is computed [px]
 };
 
@@ -26,11 +26,12 @@ struct DotRegions {
 };
 
 /// Finds the regions that have the size and shape of the dots.
-/// - Height: above a quarter of the dots' height, which is the area-weighted median over the regions that exceed eight
-///   times the noise.
+/// - Height: the peak level exceeds a quarter of the dots' usual height, which is the area-weighted median of the peak
+///   levels of all regions that exceed eight times the noise.
 /// - Size: area at half height within a factor of 3 of the median area.
-/// - Shape: a filled ellipse with about the median axis ratio, which depends on the camera's viewing angle. The area of
-///   an ellipse is 4 pi sqrt(det M) for its second moments M; every other shape has a smaller area.
+/// - Shape: a filled ellipse whose axis ratio is close to the median axis ratio of the regions; the median depends on
+///   the camera's viewing angle. The area of an ellipse is 4 pi sqrt(det M) for its second moments M; every other shape
+///   has a smaller area.
 /// Regions that touch the image's edge are reported neither as dots nor in `others`.
 /// @param levels  grey levels above the background, with bright dots
 /// @param noise   standard deviation of the grey levels

@@ -14,7 +14,8 @@
 namespace gladstone {
 namespace {
 
-constexpr double reach = 0.3;  // maximum distance of a neighbour from its predicted position, relative to the step
+// maximum distance of a neighbour from its predicted position, relative to the distance between neighbours
+constexpr double reach = 0.3;
 
 /// Image vectors from a dot to its neighbours along X and Y [px].
 struct Steps {
@@ -38,7 +39,7 @@ std::size_t nearest_to(std::vector<DetectedDot> const& dots, Vec2d at) {
   return static_cast<std::size_t>(std::min_element(dots.begin(), dots.end(), nearer) - dots.begin());
 }
 
-/// Returns the step to the nearest dot within 45 degrees of a direction.
+/// Returns the vector from a dot to its nearest neighbour within 45 degrees of a direction.
 std::optional<Vec2d> first_step(std::vector<DetectedDot> const& dots, std::size_t from, Vec2d direction) {
   std::optional<Vec2d> nearest;
   for (std::size_t k = 0; k < dots.size(); ++k) {
@@ -59,7 +60,7 @@ double median(std::vector<double> values) {
 /// Chooses the start among the dots nearest to the centroid: the dot whose steps are closest to the median steps, which
 /// is robust to missing neighbours and spurious spots.
 std::optional<Beginning> begin(std::vector<DetectedDot> const& dots, ExpectedView const& expected) {
-  constexpr std::size_t most = 25;  // five by five dots
+  constexpr std::size_t most = 25;  // maximum number of dots that are examined: five by five
   Vec2d middle{};
   for (DetectedDot const& dot : dots) middle += dot.centre_px / static_cast<double>(dots.size());
   std::vector<std::size_t> order(dots.size());
@@ -87,7 +88,7 @@ std::optional<Beginning> begin(std::vector<DetectedDot> const& dots, ExpectedVie
                            [&off](Beginning const& a, Beginning const& b) { return off(a) < off(b); });
 }
 
-/// Assigns indices from neighbour to neighbour, relative to the start.
+/// Assigns grid indices, relative to the start of the search, by proceeding from each dot to its neighbours.
 Places spread(std::vector<DetectedDot> const& dots, Beginning const& beginning) {
   Places places{{{0, 0}, beginning.dot}};
   std::vector<bool> taken(dots.size());

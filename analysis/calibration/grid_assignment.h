@@ -29,8 +29,8 @@ struct GridDot {
 
 /// Method by which the centre dot of the grid was identified among the identical dots.
 enum class CentreDotMethod {
-  whole_grid,     ///< all columns and rows are visible
-  expected_view,  ///< the dot nearest to the expected image of the centre, along X, Y or both
+  whole_grid,     ///< all columns and rows of the grid are visible, so that its middle dot is the centre dot
+  expected_view,  ///< along X, Y or both, the centre dot is the one nearest to the expected image of the grid's centre
 };
 
 struct AssignedDots {
@@ -38,11 +38,12 @@ struct AssignedDots {
   CentreDotMethod middle_by = CentreDotMethod::whole_grid;
   /// Distance of the expected centre from the chosen centre dot, larger component [spacings].
   double middle_offset = 0;
-  /// Extent of the visible grid; larger than `grid` if the target has more dots than specified.
+  /// Numbers of visible columns and rows; larger than those of `grid` if the target has more dots than specified.
   int columns = 0, rows = 0;
   /// Detected spots with a grid index that are not dots of the grid, see remove_inconsistent_spots() [px].
   std::vector<Vec2d> strangers;
-  /// RMS residual per component from a smooth grid: noise and distortions of high order; 0: unknown.
+  /// RMS residual of the dot positions per component after the fit of a smooth grid: contains noise and distortions of
+  /// high order [px]; 0: unknown.
   double smoothness_px = 0;
 };
 

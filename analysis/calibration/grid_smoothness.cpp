@@ -8,9 +8,9 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t least_for_cubic = 30, least_dots = 15;
-constexpr double deviations = 6;           // removal limit in robust standard deviations
-constexpr double least_of_spacing = 0.02;  // minimum residual for removal of a position, relative to the spacing
-// minimum residual for removal of a diameter, relative to the median diameter
+constexpr double deviations = 6;           // residual above which a spot is removed, in robust standard deviations
+constexpr double least_of_spacing = 0.02;  // minimum position residual of a removed spot, relative to the spacing
+// minimum diameter residual of a removed spot, relative to the median diameter
 constexpr double least_of_diameter = 0.25;
 constexpr double least_diameter_px = 1;
 constexpr int most_rounds = 20;
@@ -59,7 +59,8 @@ Eigen::MatrixXd diameters_of(std::vector<GridDot> const& dots) {
   return diameters;
 }
 
-/// Returns the image distance between neighbouring dots along the axis where it is shorter, from a linear fit [px].
+/// Returns the image distance between neighbouring dots along the grid axis where this distance is shorter, from a
+/// linear fit [px].
 double spacing_of(std::vector<GridDot> const& dots) {
   Eigen::MatrixXd const terms = terms_of(dots, 1), places = places_of(dots);
   Eigen::MatrixXd const map = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(places);
@@ -68,8 +69,8 @@ double spacing_of(std::vector<GridDot> const& dots) {
   return std::min(map.row(1).norm(), map.row(2).norm()) / most;
 }
 
-/// Removes the dots whose residual exceeds both the limit and half the largest residual; large outliers may have
-/// distorted the fit and thus the smaller residuals.
+/// Removes the dots whose residual exceeds both the limit and half the largest residual. Smaller residuals are not
+/// judged yet, because the large outliers may have distorted the fit.
 /// @return true if any dot was removed
 bool remove_larger(SmoothGrid& grid, Eigen::VectorXd const& size, double limit) {
   double const largest = size.maxCoeff();

@@ -11,8 +11,8 @@ namespace {
 
 using Camera = Eigen::Matrix<double, 3, 4>;
 
-/// Returns the similarity transform (homogeneous coordinates) that shifts the mean of points to 0 and scales their mean
-/// distance from it to 1.
+/// Returns the similarity transform (homogeneous coordinates) that shifts the mean of the points to 0 and scales their
+/// mean distance from 0 to 1.
 /// @param points  one point per column
 Eigen::MatrixXd normalisation(Eigen::MatrixXd const& points) {
   Eigen::Index const size = points.rows();
@@ -38,7 +38,8 @@ Eigen::MatrixXd pixels_of(CalibrationPoints const& points) {
   return pixels;
 }
 
-/// Returns the projection matrix, with the sign that makes its third row positive for the points.
+/// Returns the projection matrix, with the sign for which the third homogeneous coordinate (the depth) of the points is
+/// positive.
 Camera projection(CalibrationPoints const& points) {
   Eigen::MatrixXd const world = world_of(points), pixels = pixels_of(points);
   Eigen::MatrixXd const of_world = normalisation(world), of_pixels = normalisation(pixels);

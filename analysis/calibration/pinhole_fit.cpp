@@ -51,13 +51,13 @@ void turn(T const* p, Vec3d const& world, T* turned) {
   ceres::AngleAxisRotatePoint(p + 8, v, turned);
 }
 
-/// Accumulates one ray from a point through a position in the pupil. Adds its irradiance, cos(angle to the plate's
-/// normal) cos(angle to the lens axis) / distance^2, to `sum`, and the irradiance times the image position to `pixel`.
-/// The image position follows from the ray's intersection with the plane in focus (ideal lens). All vectors are in
-/// camera coordinates.
+/// Adds the contribution of one ray from a point of a dot through a position in the pupil to the irradiance-weighted
+/// mean image position. Adds its irradiance, cos(angle to the plate's normal) cos(angle to the lens axis) / distance^2,
+/// to `sum`, and the irradiance times the image position to `pixel`. The image position follows from the ray's
+/// intersection with the plane in focus (ideal lens). All vectors are in camera coordinates.
 /// @param across  normal of the plane of the dots
 /// @param axis    direction of the lens axis
-/// @param focus   normal of the plane in focus; null: `place` is the pinhole
+/// @param focus   normal of the plane in focus; null: `place`, the position in the pupil, is the pinhole itself
 /// @param depth   distance of the plane in focus from the camera, along its normal [m]
 template <class T>
 void add_ray(T const* p, T const* point, T const* place, T const* across, T const* axis, T const* focus, T const& depth,
@@ -143,8 +143,8 @@ struct Refinement {
   bool converged = false;
 };
 
-/// Fits from a start in three stages: without distortion and with a fixed principal point; without distortion; all
-/// parameters.
+/// Fits the parameters in three stages from their initial values: first without distortion and with a fixed principal
+/// point, then without distortion, finally all parameters.
 Refinement refine(CalibrationPoints const& points, Parameters& parameters) {
   Refinement refinement;
   Vec3d const middle = mean_of(points.world);
@@ -188,8 +188,9 @@ Eigen::MatrixXd jacobian(CalibrationPoints const& points, Parameters const& para
   return all;
 }
 
-/// Computes standard errors and covariance: inverse of J^T J times the variance of the residuals, with the columns of J
-/// normalised. If a combination of parameters is undetermined, its standard errors are infinite.
+/// Computes the covariance, which is the inverse of J^T J times the variance of the residuals, and the standard errors.
+/// The columns of J are normalised first. If a combination of parameters is undetermined, its standard errors are
+/// infinite.
 void find_errors(CalibrationPoints const& points, PinholeFit& fit, double squares) {
   Eigen::MatrixXd J = jacobian(points, fit.camera.value);
   Eigen::VectorXd const shrink = J.colwise().norm().cwiseInverse();

@@ -12,8 +12,8 @@ namespace gladstone {
 /// The pixel is (fx x' + cx, fy y' + cy), where
 /// x' = x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2),
 /// y' = y (1 + k1 r^2 + k2 r^4) + p1 (r^2 + 2 y^2) + 2 p2 x y.
-/// The camera's x axis points right, y down and z into the scene. A tilted sensor (Scheimpflug) is also a pinhole
-/// camera: z is then the sensor's normal, and (cx, cy) is away from the image centre.
+/// The camera's x axis points to the right in the image, its y axis down and its z axis into the scene. A tilted sensor
+/// (Scheimpflug) is also a pinhole camera: z is then the sensor's normal, and (cx, cy) is away from the image centre.
 struct PinholeCamera {
   static constexpr std::size_t count = 14;
   static constexpr std::array<char const*, count> names{"fx", "fy", "cx", "cy", "k1", "k2", "p1",
@@ -38,16 +38,17 @@ struct PinholeCamera {
 /// Result of a fit of PinholeCamera.
 struct PinholeFit {
   PinholeCamera camera;
-  std::array<double, PinholeCamera::count> standard_error{};  ///< to first order, from the scatter of the residuals
-  std::vector<double> covariance;                             ///< [count x count]
-  std::vector<Vec2d> residual_px;                             ///< measured minus fitted position
-  double rms_px = 0;                                          ///< rms of the residuals per component
-  bool converged = false;                                     ///< false if the maximum number of iterations was reached
+  /// Standard errors of the parameters to first order, from the scatter of the residuals.
+  std::array<double, PinholeCamera::count> standard_error{};
+  std::vector<double> covariance;  ///< covariance of the parameters [count x count], row-major
+  std::vector<Vec2d> residual_px;  ///< measured minus fitted position
+  double rms_px = 0;               ///< rms of the residuals per component
+  bool converged = false;          ///< false if the maximum number of iterations was reached
 };
 
-/// Fits all fourteen parameters by non-linear least squares (Ceres). Starts once from the linear solution (Hartley &
-/// Zisserman 2004, section 7.1) and once from the same with the principal point at the image centre, and returns the
-/// result with the smaller cost.
+/// Fits all fourteen parameters by non-linear least squares (Ceres). Fits once from the linear solution (Hartley &
+/// Zisserman 2004, section 7.1) and once from the linear solution with its principal point moved to the image centre,
+/// and returns the fit with the smaller sum of squared residuals.
 /// @param middle_px  image centre
 /// @throws std::invalid_argument if the points are coplanar or fewer than 12, which leaves the camera undetermined
 PinholeFit fit_pinhole(CalibrationPoints const& points, Vec2d middle_px);

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double least_gain = 5;        // minimum ratio by which another placement must reduce the residual
 constexpr std::size_t most_planes = 6;  // maximum number of planes for the searches over orders and pairs of planes
-constexpr int most_moved = 2;           // maximum index offset of a step with one plane [columns, rows]
+constexpr int most_moved = 2;           // maximum change of one plane's index offset in a search step [columns, rows]
 constexpr double step_gain = 0.9;       // maximum ratio of the residuals after and before a step of the search
-constexpr double rounding_px = 1e-6;    // residual that counts as zero
+constexpr double rounding_px = 1e-6;    // residual below which a fit counts as exact [px]
 constexpr double whole_spacing = 0.15;  // tolerance for offsets by whole spacings [spacings]
 constexpr double largest_drift = 0.8;   // maximum sine of the drift angle
-constexpr double precision_px = 1;      // tolerance of the principal point
+constexpr double precision_px = 1;      // tolerance for the position of the principal point [px]
 
 using Moves = std::vector<std::array<int, 2>>;  // offset of the dot indices of each plane (column, row)
 
@@ -47,7 +47,7 @@ std::optional<Vec2d> solve(Map const& f, Vec2d target) {
     Vec2d const y = (f(at + Vec2d{0, probe}) - target - off) / probe;
     double const area = x.x * y.y - x.y * y.x;
     if (!(std::abs(area) > 0)) return std::nullopt;
-    // Newton step, limited to 0.2 so that the direction remains towards the plate.
+    // The Newton step is limited to 0.2, so that the drift direction continues to point towards the plate.
     Vec2d by = {-(off.x * y.y - off.y * y.x) / area, -(x.x * off.y - x.y * off.x) / area};
     if (double const size = length(by); size > 0.2) by *= 0.2 / size;
     at += by;
@@ -56,14 +56,15 @@ std::optional<Vec2d> solve(Map const& f, Vec2d target) {
   return std::nullopt;
 }
 
-/// Finds index offsets proportional to Z, which no residual shows, that bring the principal point to the expected one.
+/// Finds the index offsets, proportional to Z, that bring the principal point to its expected position. Offsets
+/// proportional to Z do not change the residuals.
 /// @param moved  offsets of the planes before this correction; empty: none
 /// @return sum of `moved` and the found offsets; nullopt if the latter are not whole numbers or are zero
 std::optional<Moves> find_whole_drift(PlateDots const& dots, Moves const& moved, Vec2d principal_point_px) {
   PlatePlacement placement;
   placement.moved = moved;
   CalibrationPoints const given = dots.points(placement);
-  // Index offsets displace the dots of a plane within it; unlike a drift, they do not change its Z.
+  // Index offsets displace the dots of a plane within the plane; unlike a drift, they do not change its Z.
   auto const shear = solve(
       [&given](Vec2d by) {
         CalibrationPoints points = given;
@@ -127,7 +128,7 @@ Fit move_two(PlateDots const& dots, Fit const& given) {
   return best;
 }
 
-/// Adds the constant to all offsets that minimises the sum of their absolute values; a common offset does not change
+/// Adds a constant to all offsets so that the sum of their absolute values is smallest; a common offset does not change
 /// the camera.
 void shift_to_smallest(Moves& moves) {
   for (std::size_t axis = 0; axis < 2; ++axis) {

@@ -17,7 +17,7 @@ double power(double base, int exponent) {
   return product;
 }
 
-/// Returns the exponents of all terms up to third order, with Z up to `most_z`.
+/// Returns the exponents of all terms of up to third order in which the exponent of Z is at most `most_z`.
 std::vector<std::array<int, 3>> terms(int most_z) {
   std::vector<std::array<int, 3>> all;
   for (int order = 0; order <= cubic; ++order) {

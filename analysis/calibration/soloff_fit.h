@@ -8,9 +8,9 @@
 namespace gladstone {
 
 /// Polynomial camera model: pixel position as a polynomial of the world position, cubic in X and Y and quadratic in Z,
-/// 19 terms per component (Soloff, Adrian & Liu, Meas. Sci. Technol. 8 (1997) 1441, Eq. 21). It requires no model of
-/// the optics and thus covers optical windows and arbitrary lenses, but is valid only within the volume of the dots.
-/// With two planes, the terms in Z^2 are omitted.
+/// 19 terms per component (Soloff, Adrian & Liu, Meas. Sci. Technol. 8 (1997) 1441, Eq. 21). The polynomial requires no
+/// model of the optics and thus describes optical windows and arbitrary lenses, but it is valid only within the volume
+/// of the dots. With two planes, the terms in Z^2 are omitted.
 struct SoloffPolynomial {
   std::vector<std::array<int, 3>> exponents;  ///< exponents of X, Y, Z
   std::vector<Vec2d> coefficients;            ///< [px / m^(sum of the exponents)]

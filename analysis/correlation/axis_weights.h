@@ -13,19 +13,20 @@ struct AxisWeightsView {
   int size;                        ///< side of a window's support, twice the nominal window [px]
   int first_px;                    ///< image position of the first pixel of the support of window 0
   int spacing_px;                  ///< distance between the supports of neighbouring windows [px]
-  float const* weights;            ///< [window][size], 0 outside the image
-  double const* autocorrelations;  ///< [window][lags(size)]
+  float const* weights;            ///< weights of the pixels [window][size], 0 outside the image
+  double const* autocorrelations;  ///< autocorrelations of the weights [window][lags(size)]
   double const* sums;              ///< sum of the weights of each window
 
   GLADSTONE_HD static constexpr int lags(int size) { return size / 4 + 2; }
   GLADSTONE_HD int first(int window) const { return first_px + window * spacing_px; }
   GLADSTONE_HD float const* weight(int window) const { return weights + static_cast<long long>(window) * size; }
   GLADSTONE_HD double sum(int window) const { return sums[window]; }
-  /// Sum of w(i) w(i + lag), |lag| <= size/4 + 1.
+  /// Returns the autocorrelation of a window's weights w at a lag, the sum of w(i) w(i + lag). @pre |lag| <= size/4 + 1
   GLADSTONE_HD double autocorrelation(int window, int lag) const {
     return autocorrelations[static_cast<long long>(window) * lags(size) + (lag < 0 ? -lag : lag)];
   }
-  /// Relative decrease of a correlation plane with the shift: autocorrelation of the weights over its value at lag 0.
+  /// Returns the factor by which a correlation plane decreases with the shift: the autocorrelation of the weights
+  /// relative to that at lag 0.
   GLADSTONE_HD double shift_attenuation(int window, int lag) const {
     return autocorrelation(window, lag) / autocorrelation(window, 0);
   }
@@ -41,7 +42,8 @@ class AxisWeights {
     int const lags = AxisWeightsView::lags(size_);
     weights_.reserve(static_cast<std::size_t>(windows) * size_);
     autocorrelations_.reserve(static_cast<std::size_t>(windows) * lags);
-    int whole_one = -1;  // first window that is not cut off at a border; all such windows have equal weights
+    // index of the first window that is not cut off at a border; all such windows have equal weights
+    int whole_one = -1;
     for (int k = 0; k < windows; ++k) {
       int const first = first_px_ + k * spacing_px_;
       bool const whole = first >= 0 && first + size_ <= image_length;

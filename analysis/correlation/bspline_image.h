@@ -101,15 +101,15 @@ inline std::vector<double> bspline_poles(int degree) {
   return {-0.43057534709997377, -0.04309628820326465};
 }
 
-/// Returns the same filter as a symmetric convolution, for devices where recursion is slow: coefficient i is the sum
-/// over k of tap |k| times sample i + k.
-/// @return taps from k = 0 on; taps below 1e-10 of the first, less than the float resolution, are dropped
+/// Returns the filter of bspline_poles() as a symmetric convolution, for devices where recursion is slow: coefficient i
+/// is the sum over k of tap |k| times sample i + k.
+/// @return taps from k = 0 on; taps below 1e-10 of the first one are omitted, since they are below the float resolution
 inline std::vector<double> bspline_taps(int degree) {
   constexpr int most = 48;
   std::vector<double> taps(most, 0.0);
   taps[0] = 1.0;
   for (double const z : bspline_poles(degree)) {
-    // One pole: gain z^|k|, normalised to a sum of 1.
+    // Each pole z has the impulse response gain z^|k|, normalised to a sum of 1.
     double const gain = (1.0 - z) / (1.0 + z);
     std::vector<double> next(most, 0.0);
     for (int k = 0; k < most; ++k)
@@ -120,12 +120,14 @@ inline std::vector<double> bspline_taps(int degree) {
   return taps;
 }
 
-/// Non-owning view of B-spline coefficients with a margin of mirrored ones, so that evaluation needs no border test.
+/// Non-owning view of B-spline coefficients with a margin of mirrored coefficients around the image, so that evaluation
+/// needs no border test.
 template <class T>
 struct BsplineView {
   static constexpr int margin_before = 4;  ///< columns and rows before pixel 0
   static constexpr int margin_after = 8;   ///< columns and rows after the last pixel
-  static constexpr int lanes = 8;          ///< coefficients read per row: degree + 1 rounded up, extra weights are 0
+  /// Number of coefficients read per row: degree + 1 rounded up to 8; the weights of the additional ones are 0.
+  static constexpr int lanes = 8;
 
   T const* coefficients;
   int stride;
@@ -160,7 +162,8 @@ struct BsplineView {
 
 /// Image as an interpolating B-spline: it passes through every pixel and has degree - 1 continuous derivatives. The
 /// image is continued by reflection at the centres of its outermost pixels. The coefficients follow from the recursive
-/// filter of Unser et al. (1993), Eqs. 3.5 to 3.9; away from the border, polynomials up to the degree are reproduced.
+/// filter of Unser et al. (1993), Eqs. 3.5 to 3.9. Away from the border, the spline reproduces polynomials up to its
+/// degree.
 template <class T>
 class BsplineImage {
  public:
@@ -184,7 +187,8 @@ class BsplineImage {
 
   T* row(int j) { return coefficients_.data() + static_cast<std::size_t>(j + View::margin_before) * stride_; }
 
-  /// Returns the gain of the filter, which filter_lines() does not apply; its samples must be multiplied by it.
+  /// Returns the gain of the filter. The samples must be multiplied by this gain before filter_lines(), which does not
+  /// apply it.
   /// @param count  number of samples in a line
   static double filter_gain(int count, int degree) {
     double gain = 1.0;

@@ -21,10 +21,10 @@ std::vector<WindowCorrelation> correlate_spc(InterrogationJob const& job);
 /// weights.
 std::vector<WindowCorrelation> correlate_zncc(InterrogationJob const& job);
 /// Minimum quadratic difference: the window of each frame is compared with the whole of the other frame around it. The
-/// plane is 1 - sum w (A - B)^2 / sum w (A^2 + B^2), where both sums run over the two comparisons. One comparison alone
-/// has the maximum of the tracking function of Gui & Merzkirch, Exp. Fluids 21 (1996) 465, normalised by the energies;
-/// it belongs to the dot positions in the frame of the window. The two together belong to the mid-position, and
-/// exchanging the frames reverses the sign of the displacement.
+/// plane is 1 - sum w (A - B)^2 / sum w (A^2 + B^2), where both sums run over the two comparisons. A single comparison
+/// is the tracking function of Gui & Merzkirch, Exp. Fluids 21 (1996) 465, normalised by the energies; its displacement
+/// belongs to the dot positions in the frame that contains the window. The displacement of both comparisons together
+/// belongs to the mid-position and changes its sign if the frames are exchanged.
 std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job);
 /// Standard cross-correlation by OpenCV's Fourier transforms in double precision: reference for the faster methods.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job);
@@ -33,10 +33,12 @@ std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job);
 struct CorrelationMethod {
   char const* name;
   CorrelateWindows correlate = nullptr;
-  EstimateFlow optical_flow = nullptr;  ///< estimator used instead of the correlation of windows
-  bool on_gpu = false;                  ///< whether the CUDA correlator supports it
-  bool by_phase = false;                ///< whether peak heights result from phases instead of grey levels
-  bool in_ensembles = true;             ///< whether it supports InterrogationJob::ensemble
+  /// Optical flow estimator used instead of the correlation of windows; null: none.
+  EstimateFlow optical_flow = nullptr;
+  bool on_gpu = false;  ///< whether the CUDA correlator supports the method
+  /// Whether the height of a peak measures the agreement of phases instead of grey levels.
+  bool by_phase = false;
+  bool in_ensembles = true;  ///< whether the method supports InterrogationJob::ensemble
   bool tracks_dots = false;  ///< dots are tracked: tracking::make_cpu_correlator() creates the correlator, which
                              ///< estimates sigma_px itself
 };

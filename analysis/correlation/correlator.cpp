@@ -25,7 +25,7 @@ std::string missing_on_gpu(CorrelationSettings const& settings) {
   for (CorrelationMethod const& method : all_correlation_methods())
     if (settings.method == method.name && !method.on_gpu) return fmt::format("method = \"{}\"", method.name);
   if (settings.deformation == "sinc") return "deformation = \"sinc\"";
-  return subpixel_fit_on_gpu(settings.subpixel) ? "" : fmt::format("subpixel = \"{}\"", settings.subpixel);
+  return subpixel_method(settings.subpixel).on_gpu ? "" : fmt::format("subpixel = \"{}\"", settings.subpixel);
 }
 
 InterrogationGrid final_grid(CorrelationSettings const& settings, int columns, int rows) {

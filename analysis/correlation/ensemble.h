@@ -19,7 +19,7 @@ struct PairSequence {
 /// the pairs' correlation planes, so that few particles or strong noise in single pairs are tolerated. Displacements
 /// that differ between pairs are averaged and broaden the peak. Meinhart, Wereley & Santiago, J. Fluids Eng. 122 (2000)
 /// 285.
-/// @return like Correlator::correlate(); computed on the CPU
+/// @return vectors as described at Correlator::correlate(); they are computed on the CPU
 /// @throws DataError if sizes differ, a window does not fit into the image, or the method or the uncertainty estimator
 /// applies to single pairs only
 DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSettings const& settings);

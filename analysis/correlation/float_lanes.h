@@ -17,7 +17,7 @@ using IntLanes = std::int32_t __attribute__((vector_size(4 * lane_count)));
 
 inline FloatLanes all_lanes(float s) { return FloatLanes{s, s, s, s, s, s, s, s}; }
 
-/// Eight complex numbers; one cache line.
+/// Eight complex numbers, which occupy one cache line.
 struct ComplexLanes {
   FloatLanes re, im;
 };
@@ -76,7 +76,7 @@ inline unsigned bits_of_lanes(IntLanes mask) {
 #endif
 }
 
-/// Sums the lanes in a fixed order.
+/// Returns the sum of the eight lanes, added in a fixed order.
 inline float sum_of_lanes(FloatLanes v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
 
 /// Rounds down to integers. @pre |a| < 2^31
@@ -91,8 +91,8 @@ inline FloatLanes root_lanes(FloatLanes a) {
   return r;
 }
 
-/// Natural logarithm of positive normal numbers, with an error of 2e-7 (absolute or relative, whichever is larger):
-/// with x = m 2^e and m in [sqrt(1/2), sqrt(2)), log m = 2 artanh((m - 1)/(m + 1)) by its series.
+/// Computes the natural logarithm of positive normal numbers, with an error of 2e-7 (absolute or relative, whichever is
+/// larger): with x = m 2^e and m in [sqrt(1/2), sqrt(2)), log m = 2 artanh((m - 1)/(m + 1)) by its series.
 inline FloatLanes log_lanes(FloatLanes x) {
   IntLanes const bits = reinterpret_cast<IntLanes>(x);
   IntLanes const exponent = (bits - 0x3f3504f3) >> 23;
@@ -102,7 +102,7 @@ inline FloatLanes log_lanes(FloatLanes x) {
   return __builtin_convertvector(exponent, FloatLanes) * 0.69314718f + s * series;
 }
 
-/// exp(x) for |x| < 80, with a relative error of 3e-7.
+/// Computes exp(x) for |x| < 80, with a relative error of 3e-7.
 inline FloatLanes exp_lanes(FloatLanes x) {
   FloatLanes const scaled = x * 1.44269504f;
   IntLanes const whole =

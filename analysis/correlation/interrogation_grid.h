@@ -17,7 +17,7 @@ enum class GridAxis { x, y };
 struct InterrogationGrid {
   int window_px = 0;   ///< nominal side of a window [px]
   int spacing_px = 1;  ///< distance between the centres of neighbouring windows [px]
-  int columns = 0;     ///< windows per row; 0 if the image is smaller than a window
+  int columns = 0;     ///< number of windows per row; 0 if the image is smaller than a window
   int rows = 0;
   int first_x_px = 0;  ///< image column of the first pixel of the first window
   int first_y_px = 0;  ///< image row of the first pixel of the first window
@@ -35,11 +35,11 @@ struct InterrogationGrid {
             centre(GridAxis::y, static_cast<int>(vector / static_cast<std::size_t>(columns)))};
   }
 
-  /// Range of grid columns (or rows), both limits included.
+  /// Range of grid columns (or rows), including both limits.
   struct Range {
     int first, last;
   };
-  /// Returns the grid columns (or rows) whose window centres are nearest to a position: one, or two if they are equally
+  /// Returns the grid columns (or rows) whose window centres are nearest to a position: one, or two if both are equally
   /// near. @pre size() > 0
   GLADSTONE_HD Range nearest(GridAxis axis, double position_px) const {
     using std::ceil;
@@ -73,8 +73,9 @@ inline InterrogationGrid make_interrogation_grid(int image_columns, int image_ro
 
 /// Creates a grid centred on the image, so that a mirrored image has mirrored windows.
 /// Windows start at whole pixels, so the unused margin along each axis must be an even number of pixels. If it is odd
-/// along either axis and the spacing is even, the spacing is reduced by one pixel on both axes; an axis whose margin is
-/// still odd loses one window. With a single window along an axis, the grid may be half a pixel off centre.
+/// along either axis and the spacing is even, the spacing is reduced by one pixel on both axes; if the margin of an
+/// axis is still odd, the number of windows along this axis is reduced by one. With a single window along an axis, the
+/// grid may be half a pixel off centre.
 inline InterrogationGrid make_centred_grid(int image_columns, int image_rows, int window_px, double overlap) {
   InterrogationGrid grid = make_interrogation_grid(image_columns, image_rows, window_px, overlap);
   if (grid.size() == 0) return grid;

@@ -21,8 +21,8 @@ struct InterrogationJob {
   int search_radius_px = 1;  ///< largest shift searched along either axis, at most half a window [px]
   SubpixelFit fit = fit_gauss3;
   std::string label{};  ///< label of the progress bar
-  /// Accumulator of an ensemble: it adds the planes of this pair and returns the mean over all pairs so far, from which
-  /// the peaks are taken. Null: the pair is correlated by itself.
+  /// Accumulator of an ensemble. The planes of this pair are added to it, and the peaks are searched in the mean over
+  /// all pairs so far. Null: the peaks are searched in the planes of this pair.
   PlaneSums* ensemble = nullptr;
 };
 

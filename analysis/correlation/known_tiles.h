@@ -7,7 +7,8 @@
 
 namespace gladstone {
 
-/// Coarse map of fully known image tiles, for fast tests of whether all pixels of a rectangle are known.
+/// Coarse map of the image tiles in which all pixels are known, for fast tests of whether a rectangle contains known
+/// pixels only.
 class KnownTiles {
  public:
   explicit KnownTiles(ImagePair const& pair) : columns_((pair.columns + tile - 1) / tile) {

@@ -16,14 +16,14 @@ namespace {
 
 constexpr std::size_t windows_per_chunk = 8 * lane_count;
 
-/// Workspace of one thread for a chunk of windows; reused for later chunks.
+/// Workspace in which one thread correlates a chunk of windows; later chunks reuse it.
 struct Workspace {
   LaneCorrelation correlation;
   LanePlane plane;
   VisitPlanes visit;
 };
 
-/// Idle workspaces.
+/// Pool of idle workspaces.
 class WorkspacePool {
  public:
   explicit WorkspacePool(std::function<std::unique_ptr<Workspace>()> make) : make_(std::move(make)) {}
@@ -76,8 +76,9 @@ int LaneCorrelation::transform_size(InterrogationJob const& job, bool with_margi
 
 int plane_transform_size(WindowWeighting weighting, int window, int radius) {
   if (weighting == WindowWeighting::gaussian) return lane_fourier_size(window_side_px(weighting, window));
-  // One pixel beyond the search range, which is read only for the fit of a peak at the limit, one line of pixels would
-  // wrap around. For large windows this fraction is too small to justify a longer transform.
+  // The fit of a peak at the limit of the search range reads one pixel beyond this limit, where one line of the
+  // window's pixels wraps around. In large windows this line is too small a part of the window to justify a longer
+  // transform.
   return lane_fourier_size(window + radius + (window < 32 ? 1 : 0));
 }
 
@@ -95,7 +96,7 @@ void LaneCorrelation::correlate(FloatLanes scale, SpectrumFilter const& filter, 
 }
 
 /// Transforms the columns, multiplies and filters the spectra, and transforms back. Afterwards half_ contains the
-/// spectrum along x for each vertical shift; one half of it suffices since the planes are real.
+/// spectrum along x for each vertical shift; half of this spectrum suffices since the planes are real.
 void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& filter, int reach) {
   int const size = fourier_.size(), side = windows_.side();
   FloatLanes const half = 0.5f * scale, quarter = 0.25f * scale;
@@ -108,7 +109,7 @@ void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& fil
       fourier_.forward(spectrum_.data() + mx, pitch_, side, mirror_.data(), scratch_.data());
       m = mirror_.data();
     }
-    // Same formula as cross_spectrum().
+    // Compute the cross spectrum by the formula of cross_spectrum().
     for (int ky = 0; ky < size; ++ky) {
       ComplexLanes const& a = z[ky];
       ComplexLanes const& b = m[ky == 0 ? 0 : size - ky];
@@ -123,7 +124,7 @@ void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& fil
   }
 }
 
-/// Computes two rows of the real planes by one complex transform.
+/// Computes the rows of the real planes, two rows by each complex transform.
 void LaneCorrelation::make_rows(LanePlane& plane) {
   int const size = fourier_.size(), reach = plane.reach();
   for (int dy = -reach; dy <= reach; dy += 2) {

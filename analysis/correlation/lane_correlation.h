@@ -8,8 +8,8 @@
 
 namespace gladstone {
 
-/// Modifies the cross spectrum of eight windows at the wave numbers (kx, 0 .. size - 1), in the order of the transform:
-/// frequency ky - size from ky = size/2 on.
+/// Modifies the cross spectrum of eight windows at the wave numbers (kx, ky), ky = 0 .. size - 1, in the order of the
+/// transform: elements from ky = size/2 on have the frequency ky - size.
 using SpectrumFilter = std::function<void(ComplexLanes* spectrum, int kx, int size)>;
 
 /// Correlation planes of eight windows in SIMD lanes. The value at shift (dx, dy), |dx|, |dy| <= radius + 1, is in row
@@ -68,20 +68,20 @@ class LaneCorrelation {
   AxisWeightsView x_, y_;
   LaneFourier const& fourier_;
   LaneWindows windows_;
-  int pitch_;       // row stride of the spectra
-  int half_pitch_;  // row stride of the half spectra
+  int pitch_;       // row stride of the spectra [ComplexLanes]
+  int half_pitch_;  // row stride of the half spectra [ComplexLanes]
   std::vector<ComplexLanes> spectrum_, half_, line_, column_, mirror_, scratch_;
 };
 
-/// Computes the planes of the windows selected by work.windows().place(). The planes must be correlation coefficients,
-/// at most 1.
+/// Computes the planes of the windows selected by work.windows().place(). The values of the planes must be correlation
+/// coefficients, at most 1.
 using MakePlane = void (*)(LaneCorrelation& work, LanePlane& plane);
 
 /// Properties of a correlation method that computes planes.
 struct PlaneMethod {
   MakePlane make;
-  bool with_margin = false;  ///< whether it reads the search range around the window
-  /// Whether its planes decrease with the shift like the autocorrelation of the weights.
+  bool with_margin = false;  ///< whether the method reads the search range around the window
+  /// Whether the planes of the method decrease with increasing shift like the autocorrelation of the weights.
   bool decreases_with_shift = true;
 };
 

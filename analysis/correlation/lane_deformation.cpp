@@ -6,7 +6,7 @@
 namespace gladstone {
 namespace {
 
-/// Eight adjacent positions in a row, (column + l + dx, row + dy), split into pixel and offset as in
+/// Eight adjacent positions in a row, (column + l + dx, row + dy) for lane l, split into pixel and offset as in
 /// BsplineView::sample().
 template <int degree>
 struct LanePositions {
@@ -22,8 +22,8 @@ struct LanePositions {
   }
 
   /// Evaluates the spline in all lanes, assuming that they share the same integer displacement.
-  /// @tparam opposite  evaluates at (column + l - dx, row - dy): a position t after a node becomes 1 - t after the node
-  /// before it on the other side, with the same weights in reverse order
+  /// @tparam opposite true: evaluates at (column + l - dx, row - dy), where the weights are the same in reverse order,
+  ///         because a position at t after a node is replaced by one at 1 - t after the preceding node
   template <bool opposite>
   FloatLanes sum(BsplineView<float> const& image, int base_x, int base_y) const {
     using View = BsplineView<float>;

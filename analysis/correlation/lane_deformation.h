@@ -18,11 +18,12 @@ struct DeformedRow {
 struct LaneDeformation {
   BsplineView<float> reference;
   BsplineView<float> flow;
-  std::span<float const> available;  ///< 1 if both images are known, otherwise 0; empty: known everywhere
+  /// 1 at pixels that are known in both images, otherwise 0; empty: all pixels are known.
+  std::span<float const> available;
 
   /// Deforms row j of both images.
   /// @param degree  degree of the splines, 3 or 5, or windowed_sinc
-  /// @param u, v  displacement of every pixel of the row [px]
+  /// @param u,  v components of the displacement of every pixel of the row [px]
   void row(int degree, int j, std::span<float const> u, std::span<float const> v, DeformedRow const& out) const;
 };
 

@@ -11,7 +11,8 @@
 namespace gladstone {
 namespace {
 
-/// Input and output of a pass; backward transforms exchange real and imaginary parts.
+/// Reads a complex number. For a backward transform, read_value() and write_value() exchange real and imaginary parts,
+/// so that the passes of a forward transform compute the backward one.
 template <bool backward>
 ComplexLanes read_value(ComplexLanes const& v) {
   if constexpr (backward) return {v.im, v.re};
@@ -34,7 +35,7 @@ ComplexLanes operator*(ComplexLanes const& a, ComplexLanes const& w) {
   return {w.re * a.re - w.im * a.im, w.re * a.im + w.im * a.re};
 }
 
-/// Transforms `radix` numbers in place.
+/// Computes the Fourier transform of `radix` numbers in place.
 template <int radix>
 [[gnu::always_inline]] inline void butterfly(ComplexLanes (&v)[radix]) {
   if constexpr (radix == 2) {
@@ -55,8 +56,8 @@ template <int radix>
     v[2] = a - c;
     v[3] = b - d;
   } else if constexpr (radix == 6) {
-    // Prime-factor algorithm (Good & Thomas): transforms of three even and, shifted by three, three odd values need no
-    // twiddle factors between them.
+    // Prime-factor algorithm (Good & Thomas) for six values: one transform of the three even values, and one of the
+    // three odd values shifted by three. It needs no twiddle factors between the transforms.
     ComplexLanes even[3] = {v[0], v[2], v[4]}, odd[3] = {v[3], v[5], v[1]};
     butterfly<3>(even);
     butterfly<3>(odd);
@@ -83,7 +84,7 @@ template <int radix>
     v[3] = even[3] + c;
     v[7] = even[3] - c;
   } else {
-    // cosines and sines of 2 pi/5 and 4 pi/5
+    // Cosines and sines of 2 pi/5 and 4 pi/5.
     constexpr float c1 = 0.30901699437494742f, c2 = -0.80901699437494742f;
     constexpr float s1 = 0.95105651629515357f, s2 = 0.58778525229247313f;
     ComplexLanes const a = v[1] + v[4], b = v[2] + v[3], c = times_minus_i(v[1] - v[4]), d = times_minus_i(v[2] - v[3]);
@@ -98,12 +99,13 @@ template <int radix>
 }
 
 /// Returns the radix of the first pass of a transform of `left` values. Radices 6 and 8 need less memory traffic than
-/// their factors; odd radices come first, where they encounter the zeros of a padded window.
+/// their factors; odd radices come first, because the first pass can skip the zeros of a padded window.
 constexpr int radix_of(int left) {
   if (left % 24 == 0) return 6;
   for (int const radix : {3, 5})
     if (left % radix == 0) return radix;
-  if (left == 128) return 2;  // followed by two passes of radix 8; starting with 8 would require two passes of radix 4
+  // With radix 2 first, two passes of radix 8 follow; with radix 8 first, two passes of radix 4 would follow.
+  if (left == 128) return 2;
   if (left % 8 == 0 && left != 16) return 8;
   return left % 4 == 0 ? 4 : 2;
 }
@@ -191,7 +193,7 @@ void run_any(PassView<int> view, int size, int left, ComplexLanes* scratch, Comp
   }
 }
 
-/// Like run_any() for one size, with all strides known at compile time.
+/// Performs all passes like run_any(), for one size, with all strides known at compile time.
 template <bool backward, bool padded, int size, int left, class InStride>
 void run_fixed(PassView<InStride> view, ComplexLanes* scratch, ComplexLanes const* twiddles) {
   constexpr int radix = radix_of(left), groups = left / radix, stride = size / left;

@@ -29,15 +29,15 @@ class LaneFourier {
   /// @param in  value x at in[x * in_stride]; values from `filled` on count as 0 and are not read
   /// @param out  size() values; must not overlap `in`
   void forward(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out, ComplexLanes* scratch) const;
-  /// Like forward() with the opposite sign in the exponent, for size() contiguous values; the result is not divided by
-  /// size().
+  /// Computes the transform with the opposite sign in the exponent, for size() contiguous values. The result is not
+  /// divided by size().
   void inverse(ComplexLanes const* in, ComplexLanes* out, ComplexLanes* scratch) const;
 
  private:
   int size_;
   std::vector<ComplexLanes> twiddles_;  ///< twiddle factors of each pass, radix - 1 per group
   void (*forward_)(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out, ComplexLanes* scratch,
-                   ComplexLanes const* twiddles) = nullptr;  ///< specialised code; null: none for this size
+                   ComplexLanes const* twiddles) = nullptr;  ///< function specialised for this size; null: none exists
   void (*inverse_)(ComplexLanes const* in, ComplexLanes* out, ComplexLanes* scratch,
                    ComplexLanes const* twiddles) = nullptr;
 };

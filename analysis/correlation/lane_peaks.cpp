@@ -25,7 +25,8 @@ struct LaneSamples {
 struct LaneGauss3 {
   FloatLanes offset[2];  ///< along x and y [px]
   FloatLanes rise;       ///< peak height over the centre sample, at most largest_rise [1]
-  unsigned positive;     ///< bit of a lane: all of its samples are positive; otherwise its results are invalid
+  /// Bit l is set if all samples of lane l are positive; the results of the other lanes are invalid.
+  unsigned positive;
 
   explicit LaneGauss3(LaneSamples const& at) {
     FloatLanes const least = 1e-30f * at.centre;
@@ -76,7 +77,7 @@ bool can_reach(LanePlaneView const& view, PlanePeak<float> const& peak, float en
   return !(1.001f * fourth * fourth < beside);
 }
 
-/// Inserts v into the three largest numbers so far, for single numbers or in all lanes.
+/// Inserts v into the sorted list of the three largest values, for scalars or for all lanes of a SIMD vector.
 template <class T, class Larger, class Smaller>
 void take_in(T (&largest)[3], T v, Larger const& larger, Smaller const& smaller) {
   for (T& place : largest) {
@@ -114,8 +115,8 @@ LanePeaks::LanePeaks(InterrogationJob const& job, bool decreases_with_shift)
   for (auto& row : highest_) row.resize(count);
 }
 
-/// SIMD version of is_maximum(): the row above and the left neighbour must be lower; the right neighbour and the row
-/// below may be equal.
+/// Finds maxima like is_maximum(), in all lanes: the samples of the row above and the left neighbour must be lower than
+/// the maximum; the right neighbour and the row below may be equal.
 void LanePeaks::find_maxima(LanePlane const& plane) {
   std::fill_n(counts_, lane_count, 0);
   int const radius = job_.search_radius_px, count = 2 * radius + 1;
@@ -136,7 +137,7 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
       IntLanes const mask = (v > before) & (v >= larger_lanes((*below)[at], row[x + 1]));
       found_[at] = static_cast<unsigned char>(bits_of_lanes(mask));
     }
-    // Process eight columns at a time: bit 8 x + lane.
+    // Process eight columns at a time: bit 8 x + lane of the mask belongs to column first + x.
     for (int first = 0; first < count; first += 8) {
       std::uint64_t bits;
       __builtin_memcpy(&bits, found_.data() + first, sizeof bits);
@@ -160,7 +161,7 @@ float LanePeaks::third_highest(int lane) const {
   std::size_t const count = static_cast<std::size_t>(counts_[lane]);
   PlanePeak<float> const* const maxima = maxima_[lane].data();
   PeakList<float> highest;
-  int as_high = 0;  // more than three if maxima are equally high
+  int as_high = 0;  // number of maxima at least as high as the third one; more than three if maxima are equally high
   float const third = third_largest(heights_[lane].data(), count);
   visit_high(lane, third, [&](PlanePeak<float> const& peak) {
     if (as_high++ < PeakList<float>::capacity) highest.peak[highest.count++] = peak;
@@ -184,9 +185,9 @@ void LanePeaks::visit_high(int lane, float least, Visit const& visit) const {
   }
 }
 
-/// Ranks the peaks of one window as find_peaks() does, interpolating eight maxima at a time. A maximum lower than three
-/// others can neither be one of the three highest nor remove one of them, so that it is skipped; the search is repeated
-/// without this limit if fewer than three peaks are found above it.
+/// Ranks the peaks of one window as find_peaks() does, interpolating eight maxima at a time. A maximum that is lower
+/// than three others can neither be one of the three highest peaks nor remove one of them, and is therefore skipped.
+/// The search is repeated without this limit if fewer than three peaks are found.
 PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
   LanePlaneView const view{plane, lane};
   std::fill_n(heights_[lane].data() + counts_[lane], lane_count, 0.0f);
@@ -212,18 +213,19 @@ PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
   return found;
 }
 
-/// Measures a peak by any subpixel fit, one lane at a time; also used if a sample is not positive.
+/// Measures the peak of one lane by any subpixel fit. Also used for three-point Gaussian fits in which a sample is not
+/// positive.
 MeasuredPeak LanePeaks::measure(LaneCorrelation const& work, LanePlaneView const& plane, int x, int y) const {
   if (!decreases_with_shift_) return fitted_peak(job_.fit, plane, x, y);
   return fitted_peak(job_.fit, plane, x, y, work.weights_x(), work.windows().column(plane.lane), work.weights_y(),
                      work.windows().row_of(plane.lane));
 }
 
-/// Measures peak p of all windows.
+/// Measures the peak of rank p in each of the windows.
 void LanePeaks::measure_all(LaneCorrelation const& work, LanePlane const& plane, int p, PeakList<float> const* found,
                             WindowCorrelation* results) const {
   LaneSamples samples;
-  FloatLanes down[3], across[3];  // relative decrease of the plane from one pixel before to one pixel after the peak
+  FloatLanes down[3], across[3];  // shift_attenuation() at the shifts one pixel before, at and one pixel after the peak
   for (FloatLanes* factor : {down, across}) std::fill_n(factor, 3, all_lanes(1.0f));
   for (int lane = 0; lane < lane_count; ++lane) {
     if (p >= found[lane].count) continue;

@@ -33,9 +33,9 @@ class LanePeaks {
   InterrogationJob const& job_;
   bool decreases_with_shift_;
   std::vector<FloatLanes> highest_[3];  // [above, here, below][column] highest of three neighbours in a row
-  std::vector<unsigned char> found_;    // maxima in a row: one bit per lane
+  std::vector<unsigned char> found_;    // maxima in a row: one byte per column with one bit per lane
   int counts_[lane_count] = {};
-  std::vector<PlanePeak<float>> maxima_[lane_count];  // in reading order
+  std::vector<PlanePeak<float>> maxima_[lane_count];  // maxima of each lane, in reading order
   std::vector<float> heights_[lane_count];            // heights of maxima_, followed by zeros
   std::vector<PlanePeak<float>> refined_;             // maxima of one window with interpolated heights
 };

@@ -39,7 +39,7 @@ void LaneWindows::place(std::size_t begin, int count) {
     mean_reference_[lane] = source_[lane].mean_reference;
     mean_flow_[lane] = source_[lane].mean_flow;
   }
-  // All windows inside the image have equal weights.
+  // All windows inside the image have equal weights, which are gathered only once.
   if (!(whole && gathered_)) gather_weights();
   gathered_ = whole;
   reference_ = flow_ = core_reference_ = core_flow_ = FloatLanes{};
@@ -80,7 +80,7 @@ void LaneWindows::copy_lane(int lane, int first_x, int first_y, float const* wei
   float* const reference = patch_[lane].data();
   float* const flow = reference + plane;
   float* const known = flow + plane;
-  float* const weight = known + plane;  // along x, including the margin
+  float* const weight = known + plane;  // weights of the columns, including the margin
   std::copy_n(weight_x, side_, weight + margin_);
   int const begin_x = std::max(0, -left), end_x = std::min(side, pair.columns - left);
   int const begin_y = std::max(0, -top), end_y = std::min(side, pair.rows - top);
@@ -133,7 +133,7 @@ ComplexLanes term_of(FloatLanes w, FloatLanes a, FloatLanes b) {
 
 }  // namespace
 
-/// Computes a row of a term. @return sums of squares of its real and of its imaginary parts
+/// Computes a row of a term. @return sums of the squares of the real and of the imaginary parts of the row
 template <WindowTerm term>
 ComplexLanes LaneWindows::row_of_term(int j, ComplexLanes* out) const {
   int const line = j - margin_;

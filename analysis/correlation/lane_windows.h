@@ -21,14 +21,15 @@ enum class WindowTerm {
   search_back_energy  ///< A^2 over the window and the search range, and w^2
 };
 
-/// Pixels of eight windows of a grid in SIMD lanes, row by row, weighted and without their weighted means.
+/// Pixels of eight windows of a grid in SIMD lanes, row by row, with the weighted mean subtracted and the weights
+/// applied.
 class LaneWindows {
  public:
   /// @param with_margin  whether rows include the search range around the window
   LaneWindows(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y, KnownTiles const& tiles,
               WindowMeans const& means, bool with_margin);
 
-  /// Side of the square of pixels read per window [px].
+  /// Returns the side of the square of pixels that is read for each window [px].
   int side() const { return side_ + 2 * margin_; }
   /// Selects the windows begin .. begin + count - 1 and their means. Lanes from `count` on repeat the last window.
   void place(std::size_t begin, int count);
@@ -65,16 +66,17 @@ class LaneWindows {
   AxisWeightsView x_, y_;
   KnownTiles const& tiles_;
   WindowMeans const& means_;
-  int offset_;  // from the first pixel of the support to the first with weight
+  int offset_;  // distance from the first pixel of the support to the first pixel with non-zero weight [px]
   int side_;
-  int margin_ = 0;  // search range on either side
-  int padded_;      // side including the margin, rounded up to whole vectors
+  int margin_ = 0;  // width of the search range on either side of the window; 0: not read [px]
+  int padded_;      // side including the margin, rounded up to whole SIMD vectors [px]
   Source source_[lane_count];
   int column_[lane_count], row_[lane_count];
   WindowCorrelation::Outcome outcome_[lane_count];
   FloatLanes mean_reference_, mean_flow_, reference_, flow_, core_reference_, core_flow_;
   std::vector<FloatLanes> weight_x_, weight_y_;  // weight_x_ includes the margin
-  bool gathered_ = false;                        // weight_x_ and weight_y_ are those of windows inside the image
+  // true: weight_x_ and weight_y_ contain the weights of windows inside the image
+  bool gathered_ = false;
   std::vector<float> patch_[lane_count];
 };
 

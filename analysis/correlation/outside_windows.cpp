@@ -18,7 +18,7 @@ Place place_of(Image<double> const& frame, Vec2d at) {
   return std::isfinite(frame(static_cast<int>(i), static_cast<int>(j))) ? Place::known : Place::unknown;
 }
 
-/// Returns whether more pixels of a window are outside the frames than unknown.
+/// Returns whether more pixels of a window are outside the frames than are unknown inside the frames.
 bool is_outside(Image<double> const& reference, Image<double> const& flow, Vec2d centre, int window_px,
                 Vec2d displacement) {
   int outside = 0, unknown = 0;

@@ -25,7 +25,8 @@ constexpr double least_correlated = 0.25;
 /// Threshold of the decorrelation test in standard deviations: exceeded with a probability of 1 in 44 for a normal
 /// distribution.
 constexpr double deviations = 2.0;
-/// Fractions of the vectors from which a measurement is examined, and from which a warning is issued.
+/// Minimum fractions of the vectors: of doubtful vectors for the costly tests to be run, of ambiguous or uncorrelated
+/// vectors for a warning, and of vectors with failed tests for a warning.
 constexpr double suspicious = 0.05;
 constexpr double worth_a_warning = 0.1;
 constexpr double too_many_failed = 0.2;
@@ -66,14 +67,14 @@ struct Tally {
   double part(std::size_t count) const {
     return signal > 0 ? static_cast<double>(count) / static_cast<double>(signal) : 0.0;
   }
-  std::size_t known = 0;     ///< neither masked nor outside the frames
-  std::size_t compared = 0;  ///< with a correlation coefficient
+  std::size_t known = 0;     ///< number of vectors that are neither masked nor outside the frames
+  std::size_t compared = 0;  ///< number of vectors with a correlation coefficient
   std::size_t signal = 0, uncorrelated = 0, beyond = 0, failed = 0, not_replaced = 0, ambiguous = 0, doubtful = 0;
 };
 
-/// Returns whether the mean length of the measured displacements is at most 0.01 px. Identical frames give zero
-/// displacements apart from rounding; the tolerance is for the minimum quadratic difference, whose planes decrease
-/// asymmetrically with the shift.
+/// Returns whether the mean length of the measured displacements is at most 0.01 px, as for identical frames. The
+/// tolerance is required by method "mqd", whose planes decrease asymmetrically with the shift; other methods measure
+/// zero apart from rounding.
 bool stands_still(DisplacementField const& field) {
   double sum = 0.0, count = 0.0;
   for (Vec2d const& raw : field.raw_px) {
@@ -84,14 +85,14 @@ bool stands_still(DisplacementField const& field) {
   return count > 0.0 && sum <= 1e-2 * count;
 }
 
-/// Mean value and its number of independent windows.
+/// Mean correlation and the number of independent windows over which it is averaged.
 struct Mean {
   double value = 0.0;
   double windows = 0.0;
 };
 
-/// Returns the mean correlation of the vectors at most `reach` columns and rows from a vector.
-/// @param windows_per_vector  independent windows per vector: squared ratio of spacing to window size
+/// Returns the mean correlation of the vectors that are at most `reach` columns and rows away from a vector.
+/// @param windows_per_vector  number of independent windows per vector: squared ratio of spacing to window size
 Mean local_mean(DisplacementField const& field, std::size_t vector, int reach, double windows_per_vector) {
   int const column = static_cast<int>(vector) % field.columns, row = static_cast<int>(vector) / field.columns;
   double sum = 0.0, count = 0.0;
@@ -209,7 +210,7 @@ void reject_uncorrelated_vectors(DisplacementField& field, DisplacementField con
 
 namespace {
 
-/// Returns the reason why a pair cannot be assessed by its vectors; empty: it can.
+/// Returns the reason why a pair cannot be assessed by its vectors; empty if it can be assessed.
 std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& settings) {
   if (found.signal == 0) return found.known == 0 ? "all windows are masked" : "no window has a signal";
   if (correlation_method(settings.method).optical_flow) return "optical flow has no correlation";
@@ -218,14 +219,15 @@ std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& s
   return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" does not reject spurious vectors";
 }
 
-/// Costly tests, evaluated only if the vectors alone are not conclusive.
+/// Results of the costly tests, which are run only if the vectors alone are not conclusive.
 struct Evidence {
   std::function<bool()> same_pictures;
   std::function<std::optional<PatternPeriod>()> period;
   std::function<DisplacementField()> chance;
 };
 
-/// Returns the verdict from the remaining vectors. @pre the pair can be judged by its vectors
+/// Returns the verdict on the pair from the vectors that passed the decorrelation test. @pre the pair can be assessed
+/// by its vectors
 std::string verdict_of(DisplacementField const& field, Tally const& left) {
   if (std::any_of(field.status.begin(), field.status.end(), is_valid_or_replaced)) return correlates;
   return left.nothing_left() ? uncorrelated_verdict : "not judged: no vector passed its tests";
@@ -233,8 +235,9 @@ std::string verdict_of(DisplacementField const& field, Tally const& left) {
 
 void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettings const& settings) {
   if (stands_still(field) && evidence.same_pictures()) {
-    field.warnings.emplace_back(
-        "both frames are the same image, bit for bit (so that every displacement is 0); use two different frames");
+    field.warnings.push_back(
+        {WarningCode::unreliable, "",
+         "both frames are the same image, bit for bit (so that every displacement is 0); use two different frames"});
     field.verdict = "not judged: both frames are the same image";
     return;
   }
@@ -247,24 +250,26 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
   if (period) {
     if (found.part(found.ambiguous) >= worth_a_warning)
       field.warnings.push_back(
-          fmt::format("the pattern repeats every {:.2f} px (with an autocorrelation of {:.2f}), within {}: only "
-                      "displacements below {:.2f} px are unambiguous, larger ones are reduced by whole periods; use "
-                      "random dots, or set correlate.max_displacement_px below {:.2f} if no displacement is larger",
-                      period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
+          {WarningCode::unreliable, "",
+           fmt::format("the pattern repeats every {:.2f} px (with an autocorrelation of {:.2f}), within {}: only "
+                       "displacements below {:.2f} px are unambiguous, larger ones are reduced by whole periods; use "
+                       "random dots, or set correlate.max_displacement_px below {:.2f} if no displacement is larger",
+                       period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px)});
     field.verdict = fmt::format("not judged: the pattern repeats every {:.2f} px", period->pitch_px);
   } else if (found.compared > 0) {
-    // Ambiguities of earlier passes are cleared: large windows across a gradient have several peaks, among which the
-    // smaller windows of later passes have chosen.
+    // Clear the ambiguities of earlier passes: a large window across a gradient has several peaks, but the smaller
+    // windows of later passes have resolved this ambiguity.
     std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
     reject_uncorrelated_vectors(field, evidence.chance(), settings);
   }
   Tally const left(field);
   if (!period && why_not.empty()) field.verdict = verdict_of(field, left);
   bool const differ = left.part(left.uncorrelated) >= worth_a_warning;
-  if (differ) field.warnings.push_back(uncorrelated_text(left, reach));
+  if (differ) field.warnings.push_back({WarningCode::unreliable, "", uncorrelated_text(left, reach)});
   if (left.part(left.beyond) >= worth_a_warning && !(differ && left.nothing_left()))
-    field.warnings.push_back(beyond_text(left, reach, settings));
-  if (left.part(left.failed) >= too_many_failed) field.warnings.push_back(failed_text(field, left));
+    field.warnings.push_back({WarningCode::unreliable, "", beyond_text(left, reach, settings)});
+  if (left.part(left.failed) >= too_many_failed)
+    field.warnings.push_back({WarningCode::unreliable, "", failed_text(field, left)});
 }
 
 /// Returns a composite of the sequence: every pixel is taken from the first pair in which both frames have a value

@@ -23,13 +23,13 @@ InterrogationGrid sampling_grid(int columns, int rows, int window_px) {
   return grid;
 }
 
-/// Autocorrelation planes of single windows, with their scratch memory.
+/// Computes the autocorrelation planes of single windows; contains the scratch memory.
 class Autocorrelation {
  public:
   explicit Autocorrelation(int size)
       : size_(size), values_(static_cast<std::size_t>(size) * size), spectrum_(values_.size()) {}
 
-  /// Returns the plane of a window of the reference; overwritten by the next call.
+  /// Returns the plane of a window of frame A; the next call overwrites it.
   PlaneView<double> of(ImagePair const& pair, AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
     double weights = 0.0, sum = 0.0;
     visit_window_pixels(pair, x, column, y, row, [&](int, int, float weight, std::size_t at) {
@@ -53,15 +53,16 @@ class Autocorrelation {
 };
 
 /// Detection limit: minimum autocorrelation one pixel from shift 0, relative to that at shift 0, for a pattern to be
-/// recognised. Uncorrelated pixel noise causes a scatter of 1/window_px there (square root of the sum of w^8 over the
-/// sum of w^4 along both axes, w the Gaussian weights), and the largest of some thousand shifts reaches about five
-/// times that.
+/// recognised. Uncorrelated pixel noise causes a scatter of 1/window_px at that shift (square root of the sum of w^8
+/// over the sum of w^4 along both axes, w the Gaussian weights), and the largest value among some thousand shifts is
+/// about five times this scatter.
 double least_seen(int window_px) { return 8.0 / window_px; }
 
-/// Returns the geometric mean of a peak's heights one pixel from its centre along both axes, on the Gaussian through
-/// its samples. The height there is the peak height times the square root of the product of the relative heights of the
-/// two samples next to the highest one, along each axis.
-/// @param shift_attenuation  decrease of the plane with the shift, caused by the weights, which is divided out
+/// Returns the geometric mean of a peak's heights at one pixel from its centre along both axes, on the Gaussian through
+/// its samples. The height at one pixel is the peak height times the square root of the product of the relative heights
+/// of the two samples next to the highest one, along each axis.
+/// @param shift_attenuation  factor by which the weights reduce the plane at the peak's shift; the result is divided by
+///                          it
 double height_beside(PlaneView<double> const& plane, PlanePeak<double> const& peak, double shift_attenuation) {
   double const centre = plane(peak.x, peak.y);
   double const beside[4] = {plane(peak.x - 1, peak.y), plane(peak.x + 1, peak.y), plane(peak.x, peak.y - 1),

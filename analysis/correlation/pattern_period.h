@@ -10,17 +10,18 @@ namespace gladstone {
 /// Period of a repeating pattern.
 struct PatternPeriod {
   double pitch_px;  ///< shortest shift at which the pattern matches itself [px]
-  double height;    ///< autocorrelation at that shift over that at shift 0, without the contribution of noise [1]
+  /// Ratio of the autocorrelation at the pitch to that at shift 0, without the contribution of noise [1].
+  double height;
 };
 
 /// Determines the period of a pattern from the autocorrelation of up to sixteen windows of twice the first pass'
 /// window, at least 128 px, so that a few dots do not match by coincidence.
-/// A window repeats if a side peak is at least ambiguous_height_ratio times the main peak. Uncorrelated noise affects
-/// only the sample at shift 0, so the peaks are also compared one pixel from their centres along the axes: the samples
-/// of the main peak with the Gaussian fitted to the side peak. Dots of one pixel have no signal there, and are compared
-/// at the peak centres.
-/// @return nullopt if fewer than a quarter of the windows repeat within twice the search range of the first pass; a
-/// smaller period makes displacements within the search range ambiguous
+/// The pattern in a window repeats if a side peak is at least ambiguous_height_ratio times as high as the main peak.
+/// Because uncorrelated noise affects only the sample at shift 0, the peaks are also compared at one pixel from their
+/// centres along the axes: the samples of the main peak with the Gaussian fitted to the side peak. Dots of one pixel
+/// have no signal at this distance, and are compared at the peak centres.
+/// @return nullopt if the pattern repeats in fewer than a quarter of the windows within twice the search range of the
+/// first pass; a smaller period makes displacements within the search range ambiguous
 std::optional<PatternPeriod> pattern_period(Image<double> const& image, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -6,9 +6,10 @@
 #include "analysis/correlation/subpixel_peak.h"
 #include "render/base/host_device.h"
 
-/// Peaks of a correlation plane, for the CPU and the CUDA kernels. Peaks are ranked by their interpolated heights: the
-/// highest sample of a peak half a pixel off the samples is 12 % lower (Gaussian of 1 px) along each axis, so that
-/// ranking by samples would favour peaks near whole pixels, for example aliases of a regular pattern.
+/// Peaks of a correlation plane, for the CPU and the CUDA kernels. Peaks are ranked by their interpolated heights. If
+/// the maximum of a peak (a Gaussian of 1 px) is half a pixel away from the nearest samples along an axis, the highest
+/// sample is 12 % lower than the maximum. Ranking by samples would therefore favour peaks near whole pixels, for
+/// example aliases of a regular pattern.
 namespace gladstone {
 
 /// Correlation plane in the order of an inverse transform: shift (dx, dy) in row dy mod size, column dx mod size.
@@ -16,7 +17,7 @@ template <class T>
 struct PlaneView {
   T const* value;
   int size;
-  int stride;  ///< distance of neighbouring columns in values: 2 for two interleaved planes
+  int stride;  ///< distance between the values of neighbouring columns in memory [values]: 2 for two interleaved planes
 
   /// @pre -size <= dx, dy < size
   GLADSTONE_HD T operator()(int dx, int dy) const {
@@ -38,8 +39,8 @@ struct PlanePeak {
 template <class T>
 struct PeakList {
   static constexpr int capacity = 3;
-  PlanePeak<T>
-      peak[capacity];  ///< in descending order of height, except for a peak moved to the front by prefer_nearest()
+  PlanePeak<T> peak[capacity];  ///< peaks in descending order of height, except for a peak moved to the front by
+                                ///< prefer_nearest()
   int count = 0;
 };
 
@@ -52,8 +53,8 @@ GLADSTONE_HD bool is_maximum(Plane const& plane, int x, int y, T v) {
 }
 
 /// Upper bound of a peak's interpolated height over its highest sample: the value for a Gaussian of 0.6 px (the
-/// correlation of pixel-sized points) half a pixel off along both axes. Larger ratios are caused by noise in the
-/// neighbouring samples.
+/// correlation of pixel-sized points) whose maximum is half a pixel away from the highest sample along both axes.
+/// Larger ratios are caused by noise in the neighbouring samples.
 constexpr double largest_rise = 2.0;
 
 /// Interpolated position and height of a maximum, from three samples along each axis.
@@ -73,7 +74,7 @@ GLADSTONE_HD RefinedPeak<T> refined_peak(Plane const& plane, int x, int y, T v) 
   return {T(x) + across.offset, T(y) + down.offset, v * (rise < most ? rise : most)};
 }
 
-/// Returns whether a peak of that height is high enough for the list.
+/// Returns whether a peak of a given height is high enough to be inserted into the list.
 template <class T>
 GLADSTONE_HD bool can_enter(PeakList<T> const& found, T height) {
   return found.count < PeakList<T>::capacity || height > found.peak[PeakList<T>::capacity - 1].height;
@@ -88,8 +89,8 @@ GLADSTONE_HD bool are_close(PlanePeak<T> const& a, PlanePeak<T> const& b) {
   return dx < apart && -dx < apart && dy < apart && -dy < apart;
 }
 
-/// Inserts a local maximum into the list unless a higher one is close to it, and removes lower ones close to it. Maxima
-/// must be inserted in reading order. @pre can_enter(found, candidate.height)
+/// Inserts a local maximum into the list unless a higher maximum is close to it, and removes lower maxima that are
+/// close to it. Maxima must be inserted in reading order. @pre can_enter(found, candidate.height)
 template <class T>
 GLADSTONE_HD void insert_peak(PeakList<T>& found, PlanePeak<T> const& candidate) {
   int place = 0;
@@ -105,7 +106,7 @@ GLADSTONE_HD void insert_peak(PeakList<T>& found, PlanePeak<T> const& candidate)
 }
 
 /// Height ratio above which two peaks are considered equally high. In windows of a regular pattern, the heights of
-/// aliases differ by this much, because each alias lacks different dots at the window border and the three-point
+/// aliases differ by up to this ratio, because each alias lacks different dots at the window border and the three-point
 /// Gaussian does not match the peak shape exactly.
 constexpr double ambiguous_height_ratio = 0.9;
 
@@ -125,8 +126,9 @@ GLADSTONE_HD bool is_dominant_maximum(Plane const& plane, int radius, PlanePeak<
   return true;
 }
 
-/// Moves the peak nearest to shift 0 to the front of the list, among all maxima of nearly the greatest height. Aliases
-/// of a regular pattern are equally high, and the displacement, or the residual of a predictor, is most likely small.
+/// Moves the peak nearest to shift 0 to the front of the list, among all maxima of nearly the greatest height. This
+/// peak is the most likely one, because aliases of a regular pattern are equally high, whereas the displacement, or the
+/// residual after a predictor, is usually small.
 /// @param for_each_maximum  calls its argument with every positive local maximum in reading order
 template <class Plane, class T, class Maxima>
 GLADSTONE_HD void prefer_nearest(Plane const& plane, int radius, PeakList<T>& found, Maxima const& for_each_maximum) {
@@ -151,8 +153,8 @@ GLADSTONE_HD void prefer_nearest(Plane const& plane, int radius, PeakList<T>& fo
   found.peak[0] = nearest;
 }
 
-/// Calls visit for every positive local maximum with |dx|, |dy| <= radius, in reading order, unless its height is
-/// certain to be too low.
+/// Calls visit for every positive local maximum with |dx|, |dy| <= radius, in reading order; skips maxima that are
+/// certainly too low.
 /// @param could_pass  returns whether a peak of at most that height is of interest
 template <class Plane, class Visit, class CouldPass>
 GLADSTONE_HD void visit_maxima(Plane const& plane, int radius, Visit const& visit, CouldPass const& could_pass) {
@@ -174,7 +176,7 @@ GLADSTONE_HD void visit_candidate_peaks(Plane const& plane, int radius, PeakList
 
 /// Finds the positive local maxima with |dx|, |dy| <= radius that have the greatest interpolated heights. Of maxima
 /// closer than three pixels on both axes only the higher counts, so that a noisy peak is not its own secondary peak; of
-/// equal heights, the first in reading order. Finally applies prefer_nearest().
+/// maxima of equal height, the first in reading order counts. Finally applies prefer_nearest().
 /// @pre radius + 1 < size/2
 template <class T>
 GLADSTONE_HD PeakList<T> find_peaks(PlaneView<T> plane, int radius) {

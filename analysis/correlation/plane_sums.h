@@ -25,7 +25,7 @@ class PlaneSums {
 
  private:
   std::size_t plane_size_;
-  std::vector<float> sums_;    // [window][plane value]
+  std::vector<float> sums_;    // sums of the planes [window][plane value]
   std::vector<int> measured_;  // number of pairs summed for each window
 };
 

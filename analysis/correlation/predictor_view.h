@@ -27,8 +27,8 @@ inline int ghost_nodes(InterrogationGrid const& grid, int image_columns, int ima
   return static_cast<int>(std::ceil(beyond / grid.spacing_px)) + 2;
 }
 
-/// Returns value(k) for 0 <= k < count, and a linear extrapolation elsewhere. Its slope is taken over half a window,
-/// because a shorter baseline would amplify noise.
+/// Returns value(k) for 0 <= k < count, and a linear extrapolation for other k. The slope of the extrapolation is
+/// computed over half a window, because a shorter baseline would amplify noise.
 template <class Value>
 GLADSTONE_HD Vec2d extended(InterrogationGrid const& grid, int k, int count, Value const& value) {
   if (k >= 0 && k < count) return value(k);
@@ -42,8 +42,8 @@ GLADSTONE_HD Vec2d extended(InterrogationGrid const& grid, int k, int count, Val
   return value(edge) + (static_cast<double>(steps) / base) * (value(edge) - value(inner));
 }
 
-/// Returns node (column, row) of a grid, or of its linear extrapolation. @param node  node(k) is the k-th of
-/// grid.size() nodes
+/// Returns the displacement at node (column, row) of a grid, extrapolated linearly outside the grid. @param node
+/// node(k) returns the displacement at the k-th of grid.size() nodes
 template <class Node>
 GLADSTONE_HD Vec2d extended_node(InterrogationGrid const& grid, Node const& node, int column, int row) {
   return extended(grid, row, grid.rows, [&](int j) {
@@ -53,7 +53,7 @@ GLADSTONE_HD Vec2d extended_node(InterrogationGrid const& grid, Node const& node
 
 /// Non-owning view of the displacement at the nodes of a grid and its ghost nodes.
 struct PredictorView {
-  /// The four nodes used at a position along one axis, and their weights.
+  /// Four nodes between which a position is interpolated along one axis, and their weights.
   struct Taps {
     int first;
     double weight[4];
@@ -61,7 +61,8 @@ struct PredictorView {
 
   InterrogationGrid grid;
   int ghosts;
-  int columns;  ///< including the ghost nodes
+  int columns;  ///< number of columns of nodes, including the ghost nodes, by which the grid is extended beyond the
+                ///< image
   int rows;
   Vec2d const* nodes;
 

@@ -30,7 +30,7 @@ class StandardCorrelator final : public Correlator {
       : settings_(settings),
         schedule_(settings),
         correlate_(correlation_method(settings.method).correlate),
-        fit_(subpixel_fit(settings.subpixel)) {}
+        fit_(subpixel_method(settings.subpixel).fit) {}
 
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
     int const columns = reference.columns(), rows = reference.rows();
@@ -166,8 +166,8 @@ CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
 int CorrelationSchedule::search_radius_px(int pass) const {
   int const widest = windows_[pass] / (pass == 0 ? 2 : 4);
   if (pass > 0 || limit_px() >= widest) return widest;
-  // Round up to a multiple of four, because the CUDA kernels search blocks of four; grid_vector() rejects peaks beyond
-  // the limit.
+  // Round the displacement limit up to a multiple of four, because the CUDA kernels search groups of four shifts;
+  // grid_vector() rejects peaks beyond the exact limit.
   return std::min(widest, 4 * static_cast<int>(std::ceil(limit_px() / 4.0)));
 }
 
@@ -179,7 +179,7 @@ ValidationRule CorrelationSchedule::rule(int pass) const {
     rule.replaces = true;
   }
   if (pass > 0) rule.reliable_peak_ratio = std::numeric_limits<double>::infinity();
-  // In the first pass the total displacement equals the increment, which has been tested already.
+  // In the first pass the total displacement equals the increment, which the first test has already judged.
   if (pass == 0 || !is_last(pass)) rule.displacement_threshold = std::numeric_limits<double>::infinity();
   return rule;
 }
@@ -241,7 +241,8 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
 
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {
   static std::once_flag once;
-  std::call_once(once, keep_freed_memory);  // for sequences of pairs: page faults took a sixth of the time of a pass
+  // otherwise page faults take a sixth of the time of a pass in sequences of pairs
+  std::call_once(once, keep_freed_memory);
   return std::make_unique<StandardCorrelator>(settings);
 }
 

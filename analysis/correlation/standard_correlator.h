@@ -15,8 +15,8 @@ namespace gladstone {
 
 /// Creates a multi-pass cross-correlator for the CPU. Each pass deforms both images by the validated and smoothed
 /// result of the previous pass, correlates smaller windows, and adds the residual displacement. The first pass searches
-/// shifts up to half a window, the later ones up to a quarter. Smoothing applies to the predictors only, not to the
-/// result. Where displacement gradients are steep, the last pass is repeated, see steep_refinement.h.
+/// shifts of up to half a window, later passes up to a quarter of a window. Smoothing applies to the predictors only,
+/// not to the result. Where displacement gradients are steep, the last pass is repeated, see steep_refinement.h.
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings);
 
 /// Sequence of passes and their parameters, common to the CPU and the CUDA correlator.
@@ -43,17 +43,17 @@ class CorrelationSchedule {
   /// refine_steep_vectors(); 0 for a single pass, which deforms nothing, and for phase correlations, whose peak heights
   /// do not measure how well the frames match.
   int steep_passes() const { return steep_passes_; }
-  /// Returns the smoothing() of the predictors of these passes: half of that of the last predictor, so that waves
-  /// hardly longer than the window converge.
+  /// Returns the smoothing weight of the predictors of these additional passes: half of the smoothing() of the last
+  /// predictor, so that displacement waves that are hardly longer than the window converge.
   double steep_smoothing() const { return 0.5 * smoothing(passes() - 1); }
   /// Returns the weight that smoothed() gives to a node's two neighbours along an axis when a pass's vectors become a
   /// predictor: 1/4 for the last predictor and for the deformation of the frames by the result itself, and less on
   /// wider grids, in inverse proportion to their spacing.
-  /// Nodes at distance d retain 1 - part (1 - cos(2 pi d/L)) of a wave of length L. A weight of 1/4 on every grid would
-  /// remove, from wide grids, the wavelengths that their passes have to follow, and their large windows have little
-  /// noise.
+  /// For nodes at distance d and a smoothing weight s, a displacement wave of length L retains the fraction 1 - s (1 -
+  /// cos(2 pi d/L)) of its amplitude. A weight of 1/4 on wide grids would remove the wavelengths that their passes have
+  /// to resolve, and is not needed there because large windows have little noise.
   double smoothing(int pass) const;
-  /// Largest displacement along either axis [px]; infinite: limited by the windows only.
+  /// Returns the largest displacement along either axis [px]; infinite if only the window sizes limit it.
   double limit_px() const { return last_rule_.limit_px; }
   WindowWeighting weighting() const { return weighting_; }
   int spline_degree() const { return spline_degree_; }
@@ -67,11 +67,11 @@ class CorrelationSchedule {
   int steep_passes_;
 };
 
-/// Checks the sizes of an image pair against each other and the windows. @throws DataError
+/// Checks that the two images have the same size and that the windows fit into them. @throws DataError
 void check_image_sizes(CorrelationSettings const& settings, int reference_columns, int reference_rows, int flow_columns,
                        int flow_rows);
 
-/// Flags the vectors of the previous pass that were ambiguous.
+/// View of flags that mark the ambiguous vectors of the previous pass.
 struct AmbiguousPlaces {
   InterrogationGrid grid;
   char const* flag;  ///< one flag per vector; null in the first pass
@@ -90,8 +90,8 @@ struct AmbiguousPlaces {
   }
 };
 
-/// Converts the result of a window to a vector for validation: the first peak within the limit, with the following ones
-/// as alternatives.
+/// Converts the result of a window to a vector for validation: the first peak within the limit gives the displacement,
+/// the following peaks are its alternatives.
 /// @param predictor  predictor of the pass at the window's centre [px]
 /// @param limit_px  largest displacement along either axis, predictor included
 /// @param ambiguous  whether the previous pass was ambiguous here
@@ -128,8 +128,8 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
 
 /// Result for one vector of the field; NaN: not measured.
 struct MeasuredVector {
-  Vec2d displacement;  ///< after validation; NaN unless valid or replaced [px]
-  Vec2d raw;           ///< before replacement [px]
+  Vec2d displacement;  ///< displacement after validation; NaN unless valid or replaced [px]
+  Vec2d raw;           ///< displacement before replacement [px]
   double peak_ratio;
   double correlation;
   VectorStatus status;

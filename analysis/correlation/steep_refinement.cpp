@@ -31,7 +31,7 @@ std::vector<double> largest_around(std::vector<double> const& values, Interrogat
   return result;
 }
 
-/// Weighted sums of a least-squares plane through nodes around a place.
+/// Weighted sums for the least-squares fit of a plane to nodes around a position.
 class PlaneFit {
  public:
   void add(int dx, int dy, Vec2d value) {
@@ -46,13 +46,13 @@ class PlaneFit {
     x_value_ += (w * x) * value;
     y_value_ += (w * y) * value;
   }
-  /// Returns the plane's value at the place; the mean if the nodes do not define the slopes.
+  /// Returns the plane's value at the position; the mean of the nodes if they do not define the slopes.
   /// @pre at least one node was added
   Vec2d value() const {
     double const mean_x = x_ / sum_, mean_y = y_ / sum_;
     double const a = xx_ - x_ * mean_x, b = xy_ - x_ * mean_y, c = yy_ - y_ * mean_y, determinant = a * c - b * b;
     Vec2d const mean = (1.0 / sum_) * value_;
-    // The determinant of nodes on one line is zero but for rounding; that of others is at least 0.01 of sum^2.
+    // The determinant of nodes on one line is zero apart from rounding; for all other nodes it is at least 0.01 sum^2.
     if (determinant < 1e-3 * sum_ * sum_) return mean;
     Vec2d const p = x_value_ - x_ * mean, q = y_value_ - y_ * mean;
     Vec2d const slope_x = (1.0 / determinant) * (c * p - b * q), slope_y = (1.0 / determinant) * (a * q - b * p);
@@ -73,8 +73,8 @@ void visit_around(int i, InterrogationGrid const& grid, int steps, Visit const& 
       if (dx != 0 || dy != 0) visit(dx, dy, i + dy * grid.columns + dx);
 }
 
-/// Extrapolates the unknown nodes in rounds, from the border of each group of unknown nodes inwards. A round uses the
-/// nodes that were known before it. Without any known node, all nodes remain unchanged.
+/// Extrapolates the unknown nodes in rounds, from the border of each group of unknown nodes inwards. Each round uses
+/// the nodes that were known before this round. Without any known node, all nodes remain unchanged.
 void extrapolate(std::vector<Vec2d>& nodes, std::vector<char> known, InterrogationGrid const& grid) {
   std::vector<int> holes;
   for (int i = 0; i < static_cast<int>(nodes.size()); ++i)
@@ -105,7 +105,7 @@ void extrapolate(std::vector<Vec2d>& nodes, std::vector<char> known, Interrogati
   }
 }
 
-/// Returns whether a vector was measured, whatever became of it in the validation.
+/// Returns whether a vector was measured, regardless of the result of its validation.
 bool counts(GridVector const& vector) { return vector.status != VectorStatus::masked && is_measured(vector); }
 
 }  // namespace
@@ -164,7 +164,8 @@ double take_refined(RefinedPass& pass, RefinedPass const& refined, RefinementPla
     if (!is_valid_or_replaced(now.status)) continue;
     bool const was_sound = is_valid_or_replaced(before.status);
     if (was_sound && now.correlation < min_fraction_of_earlier_correlation * before.correlation) continue;
-    // A replaced vector is that of its neighbours: better than a mismatched one, but not than a measured one.
+    // A replaced vector is interpolated from its neighbours: it may replace a mismatched vector, but not a measured
+    // one.
     if (now.status == VectorStatus::replaced && before.status == VectorStatus::valid && !plan.mismatched[i]) continue;
     if (was_sound) largest = std::max(largest, length(now.displacement - before.displacement));
     if (!was_sound) largest = std::max(largest, 2.0 * negligible_refinement_px);

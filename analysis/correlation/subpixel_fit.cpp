@@ -7,40 +7,27 @@
 namespace gladstone {
 namespace {
 
-struct NamedFit {
-  char const* name;
-  SubpixelFit fit;
-  bool on_gpu = false;
-};
-
 /// Table of all subpixel fits.
 constexpr std::array fits{
-    NamedFit{"gauss3", fit_gauss3, true},
-    NamedFit{"gauss2d", fit_gauss2d, true},
-    NamedFit{"parabola", fit_parabola},
-    NamedFit{"centroid", fit_centroid},
+    SubpixelMethod{.name = "gauss3", .fit = fit_gauss3, .on_gpu = true},
+    SubpixelMethod{.name = "gauss2d", .fit = fit_gauss2d, .on_gpu = true, .nine_points = true},
+    SubpixelMethod{.name = "parabola", .fit = fit_parabola},
+    SubpixelMethod{.name = "centroid", .fit = fit_centroid},
 };
 
 }  // namespace
 
 std::vector<std::string> subpixel_fits() {
   std::vector<std::string> names;
-  for (NamedFit const& row : fits) names.emplace_back(row.name);
+  for (SubpixelMethod const& row : fits) names.emplace_back(row.name);
   return names;
 }
 
-bool subpixel_fit_on_gpu(std::string const& name) {
-  for (NamedFit const& row : fits)
-    if (name == row.name) return row.on_gpu;
+SubpixelMethod const& subpixel_method(std::string const& name) {
+  for (SubpixelMethod const& row : fits)
+    if (name == row.name) return row;
   GLADSTONE_EXPECTS(!"the name of a subpixel fit");
-  return false;
-}
-
-SubpixelFit subpixel_fit(std::string const& name) {
-  for (NamedFit const& row : fits)
-    if (name == row.name) return row.fit;
-  GLADSTONE_EXPECTS(!"the name of a subpixel fit");
-  return nullptr;
+  return fits.front();
 }
 
 }  // namespace gladstone

@@ -27,21 +27,26 @@ PeakFit fit_gauss3(PeakPatch const& patch);
 /// 511; weights: Guo, IEEE Signal Process. Mag. 28 (2011) 134. If a sample is not positive, or the fit has no maximum
 /// within one sample distance, fit_gauss3() is used.
 PeakFit fit_gauss2d(PeakPatch const& patch);
-/// Vertex of the parabola through three samples along each axis.
+/// Computes the vertex of the parabola through three samples along each axis.
 PeakFit fit_parabola(PeakPatch const& patch);
-/// Centre of mass of three samples along each axis; negative samples count as zero (Raffel et al., Particle Image
-/// Velocimetry, 3rd ed. (2018), three-point estimators). It is biased towards whole pixels, because a peak is wider
-/// than three samples (Westerweel, Meas. Sci. Technol. 8 (1997) 1379), and is provided to demonstrate this bias. Passes
-/// with image deformation remove the bias.
+/// Computes the centre of mass of three samples along each axis; negative samples count as zero (Raffel et al.,
+/// Particle Image Velocimetry, 3rd ed. (2018), three-point estimators). The result is biased towards whole pixels,
+/// because a peak is wider than three samples (Westerweel, Meas. Sci. Technol. 8 (1997) 1379); the fit is provided to
+/// demonstrate this bias. Passes with image deformation remove the bias.
 PeakFit fit_centroid(PeakPatch const& patch);
+
+/// A sub-pixel fit with its properties.
+struct SubpixelMethod {
+  char const* name;
+  SubpixelFit fit;
+  bool on_gpu = false;       ///< whether the CUDA correlator supports it
+  bool nine_points = false;  ///< whether it uses all nine samples of a PeakPatch, not only those along the axes
+};
 
 /// Returns the names of the fits.
 std::vector<std::string> subpixel_fits();
 
-/// Returns whether the CUDA correlator supports a fit. @pre name is one of subpixel_fits()
-bool subpixel_fit_on_gpu(std::string const& name);
-
 /// Returns the fit of that name. @pre name is one of subpixel_fits()
-SubpixelFit subpixel_fit(std::string const& name);
+SubpixelMethod const& subpixel_method(std::string const& name);
 
 }  // namespace gladstone

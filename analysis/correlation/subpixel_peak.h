@@ -16,8 +16,8 @@ GLADSTONE_HD T parabola_offset(T left, T centre, T right) {
   return offset < T(-1) ? T(-1) : (offset > T(1) ? T(1) : offset);
 }
 
-/// Natural logarithm. Device code in single precision uses the hardware function, with an error of 2^-21: peaks are
-/// ranked with it but measured in double precision.
+/// Natural logarithm. Device code in single precision uses the hardware function, with an error of 2^-21: device code
+/// uses single precision to rank peaks, and double precision to measure them.
 template <class T>
 GLADSTONE_HD T fast_log(T x) {
 #if defined(__CUDA_ARCH__)

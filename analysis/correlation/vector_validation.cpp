@@ -23,8 +23,8 @@ void validate_by(ValidationStage by, std::span<GridVector> vectors, int columns,
   for (int const i : spurious) reject_vector(vectors[i], failed[i]);
   if (!rule.replaces) return;
 
-  // Replace from the rim of a group of spurious vectors inwards; within a round, only vectors that were sound before it
-  // count.
+  // Replace spurious vectors from the rim of each group inwards; within a round, only vectors that were valid or
+  // replaced before the round serve as neighbours.
   while (!spurious.empty()) {
     std::vector<int> left;
     std::vector<std::pair<int, VectorReplacement>> replaced;

@@ -25,10 +25,10 @@ struct Neighbours {
       if (k == count) value[k] = v;
     ++count;
   }
-  /// Returns the median of of(k) for 0 <= k < count. @pre count > 0
+  /// Returns the median of the values of(k) for 0 <= k < count. @pre count > 0
   template <class Of>
   GLADSTONE_HD T median_of(Of const& of) const {
-    // Odd-even transposition sort; unused places are filled with infinity and end up last.
+    // Odd-even transposition sort; unused elements are filled with infinity, so that they are sorted to the end.
     T v[capacity];
     for (int k = 0; k < capacity; ++k) v[k] = k < count ? of(k) : std::numeric_limits<T>::infinity();
     for (int round = 0; round < capacity; ++round)
@@ -53,15 +53,17 @@ struct Neighbours {
 };
 
 /// Normalised median residual of a vector, Westerweel & Scarano, Exp. Fluids 39 (2005) 1096, Eq. 2: for each component,
-/// the distance from the neighbours' median over (median distance of the neighbours from it + epsilon). Returns the
-/// length of the vector of both components. A vector is spurious above about 2.
+/// the distance of the vector from the neighbours' median is divided by the sum of epsilon and the median distance of
+/// the neighbours from their median. Returns the length of the vector of both components. A vector is spurious above
+/// about 2.
 /// @param epsilon  expected noise [px]
 /// @param enough  if a cheap upper bound of the residual is not above this value, the bound is returned instead
 /// @pre neighbours.count > 0
 template <class T>
 GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& neighbours, T epsilon, T enough = T(0)) {
   using std::abs;
-  // The median is not farther than the farthest neighbour, and the neighbours' spread only lowers the residual.
+  // Upper bound: the median is not farther away than the farthest neighbour, and the neighbours' spread only reduces
+  // the residual.
   Vec2<T> farthest{};
   for (int k = 0; k < Neighbours<T>::capacity; ++k) {
     if (k >= neighbours.count) continue;
@@ -81,11 +83,12 @@ GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& n
 struct GridVector {
   Vec2d displacement;                   ///< displacement including the predictor [px]; undefined if masked or invalid
   Vec2d predictor;                      ///< predictor of the pass at the window's centre [px]
-  Vec2d raw;                            ///< as measured, including the predictor [px]; NaN: no measurement
+  Vec2d raw;                            ///< measured displacement, including the predictor [px]; NaN: no measurement
   std::array<Vec2d, 2> alternatives{};  ///< displacements of the next correlation peaks, including the predictor [px]
   int alternative_count = 0;
-  double correlation = 0.0;  ///< coefficient of the peak that gave `raw` [1]
-  double peak_ratio = 0.0;   ///< peak ratio of that peak [1]; 0 if it is not the highest
+  double correlation = 0.0;  ///< correlation coefficient of the peak from which `raw` was determined [1]
+  /// Peak ratio of the peak from which `raw` was determined [1]; 0 if another peak is higher.
+  double peak_ratio = 0.0;
   Ambiguity ambiguous = Ambiguity::none;
   VectorStatus status = VectorStatus::invalid;
   VectorReason reason = VectorReason::no_signal;
@@ -100,9 +103,9 @@ struct ValidationRule {
   double epsilon_px = 0.1;  ///< noise level in the normalised median residual [px]
   /// Peak ratio from which a vector may deviate from its neighbours [1], see has_reliable_correlation().
   double reliable_peak_ratio = 2.0;
-  double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis
+  double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis [px]
   double least_peak_ratio = 0.0;   ///< lowest peak ratio of a vector, regardless of its neighbours [1]
-  double least_correlation = 0.0;  ///< lowest correlation coefficient of its peak [1]
+  double least_correlation = 0.0;  ///< lowest correlation coefficient of a vector's peak [1]
   /// Largest normalised median residual of the total displacement, see is_displacement_outlier(); infinite: no test.
   double displacement_threshold = std::numeric_limits<double>::infinity();
   bool replaces = true;  ///< true: spurious vectors are replaced; false: they are invalid
@@ -175,9 +178,9 @@ GLADSTONE_HD inline bool is_valid_or_replaced(VectorStatus status) {
 }
 
 /// Returns whether the correlation of a vector outweighs a deviation from its neighbours: its peak ratio is high, it is
-/// not ambiguous, and the deviation is at most max_reliable_deviation_px. In windows of 16 px with five dots, 19 of 20
-/// random peaks that exceed the true peak in noise have a peak ratio below 2; of the true peaks in clean images, 1
-/// in 50.
+/// not ambiguous, and the deviation is at most max_reliable_deviation_px. In windows of 16 px with five dots, a peak
+/// ratio below 2 occurs for 19 of 20 random peaks that exceed the true peak in noisy images, but only for 1 of 50 true
+/// peaks in noise-free images.
 GLADSTONE_HD inline bool has_reliable_correlation(GridVector const& vector, Neighbours<double> const& neighbours,
                                                   ValidationRule const& rule) {
   return vector.peak_ratio >= rule.reliable_peak_ratio && vector.ambiguous == Ambiguity::none &&
@@ -188,7 +191,8 @@ GLADSTONE_HD inline bool has_reliable_correlation(GridVector const& vector, Neig
 struct Surroundings {
   Neighbours<double> offset;  ///< positions on the grid relative to the vector
   Neighbours<double> increment;
-  Neighbours<double> displacement;  ///< filled only if some of the eight neighbours are missing
+  /// Displacements of the neighbours; filled only if some of the eight neighbours are missing.
+  Neighbours<double> displacement;
 
   template <class Usable>
   GLADSTONE_HD Surroundings(GridVector const* vectors, int i, int columns, int rows, Usable const& usable)
@@ -203,10 +207,10 @@ struct Surroundings {
   GLADSTONE_HD bool is_whole() const { return increment.count == Neighbours<double>::capacity; }
 };
 
-/// Median test: returns whether a displacement agrees with its neighbours. The increments to the predictor are
-/// compared. If neighbours are missing (at the border), their median is biased by the local gradient and the predictor
-/// is extrapolated; then the displacement also agrees if it passes the test for the total displacements, or for either
-/// quantity without its slopes.
+/// Median test: returns whether a displacement agrees with its neighbours. The test compares the increments to the
+/// predictor. If neighbours are missing (at the border), their median is biased by the local gradient and the predictor
+/// is extrapolated; in this case the displacement also agrees if it passes the test for the total displacements, or the
+/// test for increments or total displacements after subtraction of their slopes.
 GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surroundings const& around,
                                 ValidationRule const& rule) {
   auto const is_near = [&](Vec2d value, Neighbours<double> const& neighbours) {
@@ -219,14 +223,14 @@ GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surrounding
                                 is_near(displacement, without_slope(around.displacement, around.offset)));
 }
 
-/// Fraction of the neighbours' median correlation below which a window correlates worse than they do.
+/// Fraction of the neighbours' median correlation below which a window correlates worse than its neighbours.
 constexpr double min_relative_correlation = 0.9;
 
-/// Returns whether a total displacement deviates from its neighbours and its window also correlates worse than theirs.
-/// A gross error of an earlier pass is contained in the predictor, and the last increment is small, so that the median
-/// test of the increments does not detect it. Gradients as steep as the grid is fine cause deviating displacements,
-/// too, but no lower correlation. At the border, where the median is biased by the gradient, the test must also fail
-/// for the neighbours without their slopes.
+/// Returns whether a total displacement deviates from its neighbours and the correlation of its window is also lower
+/// than that of their windows. The median test of the increments does not detect a gross error of an earlier pass,
+/// because the predictor contains this error and the last increment is small. A gradient that is steep on the scale of
+/// the grid also causes deviating displacements, but does not lower the correlation. At the border, where the median is
+/// biased by the gradient, the test must also fail for the neighbours without their slopes.
 template <class Usable>
 GLADSTONE_HD bool is_displacement_outlier(GridVector const* vectors, int i, int columns, int rows,
                                           ValidationRule const& rule, Usable const& usable) {
@@ -249,11 +253,13 @@ GLADSTONE_HD bool is_displacement_outlier(GridVector const* vectors, int i, int 
   return vectors[i].correlation < min_relative_correlation * correlation.median().x;
 }
 
-/// Successive tests of a grid: vectors rejected by the first no longer count as neighbours in the second.
+/// Successive tests of the vectors of a grid: vectors rejected in the first stage are not used as neighbours in the
+/// second stage.
 enum class ValidationStage { increments, displacements };
 
-/// Returns the test that a valid vector i fails: peak ratio, correlation or agreement with its valid neighbours; for
-/// ValidationStage::displacements, only is_displacement_outlier(). See validate_vectors().
+/// Returns the first test that a valid vector i fails, see validate_vectors(). The tests of ValidationStage::increments
+/// are peak ratio, correlation and agreement with the valid neighbours; the test of ValidationStage::displacements is
+/// is_displacement_outlier().
 GLADSTONE_HD inline FailedTest failed_test(GridVector const* vectors, int i, int columns, int rows,
                                            ValidationRule const& rule, ValidationStage by) {
   GridVector const& vector = vectors[i];
@@ -271,7 +277,7 @@ GLADSTONE_HD inline FailedTest failed_test(GridVector const* vectors, int i, int
   return stands ? FailedTest::none : FailedTest::median;
 }
 
-/// Returns the number of successive tests that a rule requires.
+/// Returns the number of validation stages that a rule requires.
 GLADSTONE_HD inline int validation_stage_count(ValidationRule const& rule) {
   return rule.displacement_threshold < std::numeric_limits<double>::infinity() ? 2 : 1;
 }
@@ -282,8 +288,8 @@ struct VectorReplacement {
   VectorReason reason;
 };
 
-/// Finds the replacement of the spurious vector i. @return false if it has fewer than fewest_neighbours sound
-/// neighbours
+/// Finds the replacement of the spurious vector i. @return false if fewer than fewest_neighbours of its neighbours are
+/// valid or replaced
 GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int columns, int rows,
                                           ValidationRule const& rule, VectorReplacement& found) {
   GridVector const& vector = vectors[i];
@@ -291,7 +297,7 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   Surroundings const around(vectors, i, columns, rows, usable);
   if (around.increment.count < fewest_neighbours) return false;
   if (is_displacement_outlier(vectors, i, columns, rows, rule, usable)) {
-    // The predictor is wrong, and so are all peaks found with it.
+    // The predictor is wrong, and therefore all peaks found with it are wrong.
     Neighbours<double> offset;
     Neighbours<double> const displacement = neighbours_of(
         i, columns, rows, [&](int k) { return vectors[k].displacement; }, usable, offset);
@@ -301,8 +307,8 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   found = {around.is_whole() ? vector.predictor + around.increment.median()
                              : without_slope(around.displacement, around.offset).median(),
            VectorReason::neighbours};
-  // Secondary peaks are not used without a median test, which would have to select them, nor if the main peak is below
-  // the least correlation, since secondary peaks are lower still.
+  // Do not use secondary peaks if there is no median test to select them, or if the main peak is below the minimum
+  // correlation, since secondary peaks are even lower.
   if (!(rule.threshold < std::numeric_limits<double>::infinity()) || vector.correlation < rule.least_correlation)
     return true;
   for (int k = vector.alternative_count - 1; k >= 0; --k)
@@ -311,7 +317,8 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   return true;
 }
 
-/// reject_vector() marks a vector as spurious; replace() stores its replacement, which is invalid beyond the limit.
+/// Marks a vector as spurious (reject_vector()), or stores its replacement (replace()). A replacement beyond the limit
+/// is invalid.
 GLADSTONE_HD inline void reject_vector(GridVector& vector, FailedTest failed) {
   vector.status = VectorStatus::invalid;
   vector.reason = VectorReason::not_replaced;
@@ -325,7 +332,8 @@ GLADSTONE_HD inline void replace(GridVector& vector, VectorReplacement const& by
   if (!allowed) vector.failed = FailedTest::none;
 }
 
-/// Finds the value of the unknown node i as the median of its known neighbours. @return false if it has none
+/// Computes the value of the unknown node i as the median of its known neighbours. @return false if no neighbour is
+/// known
 template <class Known>
 GLADSTONE_HD bool find_gap_value(Vec2d const* nodes, int i, int columns, int rows, Known const& known, Vec2d& value) {
   Neighbours<double> offset;
@@ -336,23 +344,25 @@ GLADSTONE_HD bool find_gap_value(Vec2d const* nodes, int i, int columns, int row
   return true;
 }
 
-/// Weighted mean of three nodes in a line. @param part  total weight of the two outer nodes
+/// Returns the weighted mean of three nodes in a line. @param part  total weight of the two outer nodes
 GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after, double part) {
   return 0.5 * part * (before + after) + (1.0 - part) * middle;
 }
 
-/// Finds spurious vectors among the valid ones of a grid, and replaces them. The result does not depend on their order.
+/// Finds spurious vectors among the valid ones of a grid, and replaces them. The result does not depend on the order in
+/// which the vectors are tested.
 /// - The median test applies to the increments to the predictor, which no longer contain steep gradients; see
 ///   agrees() for the border. Then, if the rule requires it, is_displacement_outlier() tests the total displacements.
-/// - A spurious vector is replaced by the highest secondary peak that agrees with the sound neighbours, otherwise by
-///   their median. It becomes invalid if fewer than three neighbours are sound, the replacement exceeds the limit, or
-///   the rule does not allow replacements.
+/// - A spurious vector is replaced by the highest secondary peak that agrees with the valid or replaced neighbours,
+///   otherwise by the neighbours' median. The vector becomes invalid if it has fewer than three such neighbours, the
+///   replacement exceeds the limit, or the rule does not allow replacements.
 /// - Vectors with fewer than three neighbours and those accepted by has_reliable_correlation() remain unchanged: the
 ///   median would clip the maxima of structures as fine as the grid.
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule);
 
 /// Returns the displacement at every node, for a predictor. Masked and invalid nodes are filled with the median of
-/// their neighbours, from the border of each gap inwards; all values are zero if the grid has no sound vector.
+/// their neighbours, from the border of each gap inwards; all values are zero if the grid has no valid or replaced
+/// vector.
 std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int columns);
 
 /// Smooths the nodes by smoothed() along each axis, except across the border, so that linear fields remain unchanged.

@@ -49,7 +49,7 @@ struct GreyLevels {
     }
     GreyLevels seen;
     for (std::size_t l = 0; l < lanes; ++l) seen.include({least[l], most[l], !(zero[l] == 0.0)});
-    if (seen.gaps) {  // The extremes may be infinite: repeat with the finite values only.
+    if (seen.gaps) {  // The extremes may be infinite: repeat the search with the finite values only.
       seen = {.gaps = true};
       for (i = 0; i < count; ++i)
         if (std::isfinite(values[i])) seen.include({values[i], values[i]});
@@ -95,8 +95,8 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
   pair.rows = reference.rows();
   // Subtracting a mid-range level in double preserves faint contrast on a bright background in float. Scaling by a
   // power of two, which is exact, brings the contrast near 1, so that products of four levels do not overflow, and
-  // energies and weights are of similar magnitude in a joint transform. Both values are estimated from a sample of
-  // pixels; the full range may be up to a hundred times larger.
+  // energies and weights, which are transformed together, have similar magnitudes. Both values are estimated from a
+  // sample of pixels; the full range may be up to a hundred times larger.
   GreyLevels const some = some_levels(reference, flow);
   bool const any = some.low <= some.high;
   double const level = any ? 0.5 * (some.low + some.high) : 0.0;

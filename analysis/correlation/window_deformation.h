@@ -13,15 +13,16 @@
 
 namespace gladstone {
 
-/// Image pair in the form used by a correlation pass: row by row, in float, with a common grey level subtracted and
-/// scaled by a power of two.
+/// Image pair in the form used by a correlation pass: grey levels row by row, in float, after subtraction of a common
+/// level and multiplication by a power of two.
 struct ImagePair {
   int columns = 0;
   int rows = 0;
   UninitializedVector<float> reference;
   UninitializedVector<float> flow;
-  UninitializedVector<float> available;  ///< 1 if both images are known, otherwise 0; empty: known everywhere
-  float contrast = 0.0f;                 ///< scaled range of the grey levels of both images
+  /// 1 at pixels that are known in both images, otherwise 0; empty: all pixels are known.
+  UninitializedVector<float> available;
+  float contrast = 0.0f;  ///< scaled range of the grey levels of both images
 };
 
 /// Interpolates a displacement from the nodes of a grid to every pixel: cubic convolution (Keys, IEEE Trans. ASSP 29
@@ -34,7 +35,7 @@ class DensePredictor {
 
   Vec2d at(Vec2d position_px) const { return view().at(position_px); }
   /// Computes the displacement at every pixel centre of an image row.
-  /// @param u, v  output: one value per column [px]
+  /// @param u,  v  output: one value per column [px]
   void row(int image_row, std::span<float> u, std::span<float> v) const;
 
   PredictorView view() const { return {grid_, ghosts_, columns_, rows_, nodes_.data()}; }
@@ -49,7 +50,7 @@ class DensePredictor {
   std::vector<float> column_weights_[4];  // [node][image column]
 };
 
-/// Pixel of a deformed pair.
+/// Grey levels of both images of a deformed pair at one pixel.
 struct DeformedPixel {
   float reference;
   float flow;
@@ -69,7 +70,7 @@ GLADSTONE_HD float known_at(float x, float y, int columns, int rows, Known const
 }
 
 /// Returns pixel (i, j) of reference(x - d/2) and flow(x + d/2).
-/// @param u, v  displacement d at the pixel [px]
+/// @param u,  v  displacement d at the pixel [px]
 /// @param known  returns 1 if both original images are known at a pixel (column, row), otherwise 0
 template <int degree, class Known>
 GLADSTONE_HD DeformedPixel deformed_pixel(BsplineView<float> const& reference, BsplineView<float> const& flow, int i,
@@ -88,15 +89,15 @@ GLADSTONE_HD DeformedPixel deformed_pixel(BsplineView<float> const& reference, B
 /// both deformed images. The residual displacement belongs to the mid-position and is second-order accurate in time.
 class PairDeformer {
  public:
-  /// Pixels that are not finite count as unknown.
+  /// Prepares both frames for deformation. Pixels that are not finite count as unknown.
   /// @param degree  degree of the B-spline, 3 or 5, or windowed_sinc
   PairDeformer(Image<double> const& reference, Image<double> const& flow, int degree);
 
   /// Returns the deformed pair reference(x - d(x)/2) and flow(x + d(x)/2), with d the predictor [px].
   ImagePair deform(DensePredictor const& predictor) const;
-  /// Like deform() above, reusing the memory of an earlier result.
+  /// Deforms the pair like deform() above, but reuses the memory of an earlier result.
   void deform(DensePredictor const& predictor, ImagePair& pair) const;
-  /// Pair without deformation.
+  /// Returns the pair without deformation.
   ImagePair const& original() const { return original_; }
 
  private:

@@ -8,8 +8,8 @@
 
 namespace gladstone {
 
-/// Weighted means of both frames over each window of a job that is entirely inside the image, as if all pixels were
-/// known. Windows overlap, so the sums along pixel columns are computed once for all windows of a grid row.
+/// Weighted means of both frames over each window of a job that is entirely inside the image. All pixels are assumed to
+/// be known. Windows overlap, so the sums along pixel columns are computed once for all windows of a grid row.
 class WindowMeans {
  public:
   WindowMeans(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y);

@@ -8,8 +8,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-/// Results of one window and the evaluation of its correlation plane, in functions shared by the CPU and the CUDA
-/// kernels.
+/// Results of one window, and functions that evaluate its correlation plane, shared by the CPU and the CUDA kernels.
 namespace gladstone {
 
 /// Result of the correlation of one window.
@@ -18,18 +17,18 @@ struct WindowCorrelation {
   Outcome outcome = Outcome::no_signal;
   int peaks = 0;                 ///< number of peaks found, at most 3, in the order of PeakList
   std::array<Vec2d, 3> shift{};  ///< subpixel positions of the peaks [px]
-  /// Peak heights as correlation coefficients of the region where the shifted windows overlap [1]. The decrease of the
-  /// plane with the shift is divided out, so that the aliases of a periodic pattern have equal heights. They are 1
-  /// apart from noise and interpolation error.
+  /// Peak heights as correlation coefficients of the region where the shifted windows overlap [1]. They are corrected
+  /// for the decrease of the plane with the shift, so that the aliases of a periodic pattern have equal heights. In
+  /// perfectly matching windows they are 1 apart from noise and interpolation error.
   std::array<double, 3> coefficient{};
   double peak_ratio = 0.0;  ///< height of the first peak over the higher of the other peaks, at most 1000 [1]
 };
 
 constexpr double largest_peak_ratio = 1000.0;
-/// Lowest contrast of a signal: weighted rms of the window over the grey-level range of the image pair. Lower values
-/// are rounding errors.
+/// Minimum contrast of a window with a signal: ratio of the weighted rms of the window to the grey-level range of the
+/// image pair. Lower values are rounding errors.
 constexpr double smallest_contrast = 1e-6;
-/// Smallest fraction of a window's weight on known pixels: one half, with a margin for rounding.
+/// Minimum fraction of a window's weight that must be on known pixels: one half, with a margin for rounding.
 constexpr double min_valid_weight_fraction = 0.5 - 1e-5;
 
 /// Returns the factor that converts a plane of unnormalised transforms of size^2 values to correlation coefficients; 0
@@ -46,11 +45,11 @@ GLADSTONE_HD inline double plane_scale(WindowEnergy const& energy, float contras
 /// Position and height of a peak.
 struct MeasuredPeak {
   Vec2d shift;         ///< position [px]
-  double coefficient;  ///< height, as in WindowCorrelation [1]
+  double coefficient;  ///< height of the peak as a correlation coefficient, see WindowCorrelation [1]
 };
 
 /// Returns the height of the first peak over that of the higher of the other two, at most largest_peak_ratio.
-/// @param second, third  heights of the other peaks; 0: none
+/// @param second,  third  heights of the other peaks; 0: none
 GLADSTONE_HD inline double peak_ratio(double first, double second, double third) {
   double const other = second > third ? second : third;
   double const ratio = first / (other > 1e-12 ? other : 1e-12);

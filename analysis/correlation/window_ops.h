@@ -27,9 +27,9 @@ GLADSTONE_HD constexpr int window_side_px(WindowWeighting weighting, int window_
 }
 
 /// Returns the weight along one axis; the weight of a pixel is the product over both axes. The Gaussian exp(-pi
-/// (offset/window_px)^2) has the same area as the nominal window, so that the effective number of particles is the same
-/// (Eckstein & Vlachos, Meas. Sci. Technol. 20 (2009) 055401). It is cut off where it has decreased to exp(-pi) =
-/// 0.043.
+/// (offset/window_px)^2) has the same area as the nominal window, so that the effective number of particles equals that
+/// in the nominal window (Eckstein & Vlachos, Meas. Sci. Technol. 20 (2009) 055401). The Gaussian is cut off where it
+/// has decreased to exp(-pi) = 0.043.
 /// @param offset  distance from the window's centre [px]
 /// @param window_px  nominal window size [px]
 template <class T>
@@ -61,7 +61,7 @@ struct WindowSums {
 struct WindowEnergy {
   float reference = 0.0f;
   float flow = 0.0f;
-  float core_reference = 0.0f;  ///< sum over the nominal window only
+  float core_reference = 0.0f;  ///< sum of frame A over the nominal window only
   float core_flow = 0.0f;
 };
 

@@ -14,11 +14,11 @@ GLADSTONE_HD inline MeasuredPeak to_measured_peak(PeakFit const& fit, int peak_x
   return {{peak_x + fit.x, peak_y + fit.y}, height * (rise < largest_rise ? rise : largest_rise)};
 }
 
-/// Measures a peak by a subpixel fit. The decrease of the plane with the shift, caused by the weights, is divided out
-/// first because it biases every peak towards zero.
+/// Measures a peak by a subpixel fit. The plane is first divided by the factor by which the weights reduce it with
+/// increasing shift, because this decrease biases every peak towards zero.
 /// @param plane  correlation coefficient at a shift (dx, dy)
-/// @param x, y  window weights along the axes
-/// @param column, row  position of the window in the grid
+/// @param x,  y  window weights along the axes
+/// @param column,  row  position of the window in the grid
 template <class Fit, class Plane>
 GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int peak_x, int peak_y,
                                       AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
@@ -32,7 +32,7 @@ GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int pe
   return to_measured_peak(fit(patch), peak_x, peak_y, patch.value[1][1]);
 }
 
-/// Like fitted_peak() above, for planes that do not decrease with the shift.
+/// Measures a peak by a subpixel fit, for planes that do not decrease with the shift.
 template <class Fit, class Plane>
 GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int peak_x, int peak_y) {
   PeakPatch patch;

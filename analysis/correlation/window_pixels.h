@@ -9,8 +9,8 @@
 namespace gladstone {
 
 /// Calls visit(i, j, weight, at) for every pixel (i, j) of a window's support that is inside the image, row by row;
-/// `at` is its index in the frames. The weight is 0 for pixels that are unknown in one of the frames.
-/// @param column, row  position of the window in the grid
+/// `at` is the index of the pixel in the frames. The weight is 0 for pixels that are unknown in one of the frames.
+/// @param column,  row  position of the window in the grid
 template <class Visit>
 void visit_window_pixels(ImagePair const& pair, AxisWeightsView const& x, int column, AxisWeightsView const& y, int row,
                          Visit const& visit) {

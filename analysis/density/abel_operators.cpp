@@ -12,8 +12,9 @@
 namespace gladstone::density {
 namespace {
 
-/// Calls visit(x, weight) for the quadrature of integral h(x) dx / sqrt(x^2 - r^2) over [low, high], r <= low, in units
-/// of the spacing. The substitution x^2 = r^2 + y^2 turns dx / sqrt(x^2 - r^2) into dy / x, which is smooth.
+/// Calls visit(x, weight) for each node of the quadrature of integral h(x) dx / sqrt(x^2 - r^2) over [low, high], with
+/// r <= low and lengths in units of the spacing. The substitution x^2 = r^2 + y^2 turns dx / sqrt(x^2 - r^2) into dy /
+/// x, which is smooth.
 template <class Visit>
 void integrate_abel_kernel(GaussLegendre const& rule, double r, double low, double high, Visit const& visit) {
   double const y0 = std::sqrt(std::max(0.0, low * low - r * r)), y1 = std::sqrt(high * high - r * r);
@@ -36,7 +37,7 @@ Eigen::MatrixXd make_gradient_inversion(int n) {
         std::array<double, 4> const cubic = lagrange_cubics(x - j);
         for (int k = 0; k < 4; ++k) {
           int const node = j - 1 + k;
-          if (node == 0 || node >= n) continue;  // zero on the axis and beyond the last radius
+          if (node == 0 || node >= n) continue;  // the gradient is zero on the axis and beyond the last radius
           double const sign = node < 0 ? -1.0 : 1.0;
           d(i, std::abs(node)) -= sign * weight * cubic[static_cast<std::size_t>(k)] / pi;
         }

@@ -15,7 +15,8 @@
 namespace gladstone::density {
 namespace {
 
-/// Orthonormal cosine transform (DCT-II) of n values: row k contains the wave of k half periods.
+/// Returns the matrix of the orthonormal cosine transform (DCT-II) of n values: row k contains the wave of k half
+/// periods.
 Eigen::MatrixXd make_cosine_transform(int n) {
   Eigen::MatrixXd transform(n, n);
   for (int k = 0; k < n; ++k)
@@ -52,7 +53,7 @@ struct ApertureDeconvolution::Filter {
   PlaneGrid grid;
   std::vector<std::uint8_t> determined;
   HarmonicContinuation continuation;
-  Eigen::MatrixXd along_x, along_y;  ///< cosine transforms
+  Eigen::MatrixXd along_x, along_y;  ///< matrices of the cosine transforms along each axis
   Eigen::MatrixXd gain;              ///< Wiener gain of every wave [columns, rows]
   double wiener_parameter = 0.0;
 };
@@ -64,7 +65,7 @@ ApertureDeconvolution::ApertureDeconvolution(PlaneGrid const& grid, std::span<st
   if (std::none_of(determined.begin(), determined.end(), [](std::uint8_t d) { return d != 0; }))
     throw DataError(
         ErrorCode::undetermined, "density",
-        "no node has a density, so that nothing can be deconvolved; check the mask and the validation of the vectors");
+        "no node has a density (there is nothing to deconvolve); check the mask and the validation of the vectors");
 
   auto filter = std::make_unique<Filter>(grid, determined);
   double const root = maximum_gain - std::sqrt(maximum_gain * maximum_gain - 1.0);

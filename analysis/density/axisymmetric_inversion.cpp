@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/density/abel_operators.h"
+#include "analysis/density/density_methods.h"
 #include "analysis/density/radial_profile.h"
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
@@ -14,11 +14,9 @@
 namespace gladstone::density {
 namespace {
 
-/// Largest number of rows from which the regularisation parameter is determined.
-constexpr std::size_t regularization_rows = 8;
-
 void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings const& settings) {
   std::vector<SetupProblem> problems;
+  bool const regularized = abel_method(settings.method).regularized;
   double const first_vector = map.grid.origin.x,
                last_vector = first_vector + (map.grid.columns - 1) * map.grid.spacing.x;
   auto const [first, last] = settings.axis_range.value_or(std::array{first_vector, last_vector});
@@ -26,46 +24,33 @@ void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings co
     problems.push_back({"axis", fmt::format("the axis at {:.4g} mm is outside the image ({:.4g} to {:.4g} mm); give a "
                                             "position inside, or none to find it",
                                             1e3 * *settings.axis, 1e3 * first, 1e3 * last)});
-  if (settings.method == AbelMethod::tikhonov && settings.choice == RegularizationChoice::given &&
+  if (regularized && settings.choice == RegularizationChoice::given &&
       !(settings.lambda > 0.0 && std::isfinite(settings.lambda)))
     problems.push_back({"lambda", fmt::format("expected a positive number, got {}", settings.lambda)});
   if (!std::isfinite(settings.ambient_density))
     problems.push_back({"ambient_density", fmt::format("expected a finite density, got {}", settings.ambient_density)});
   if (!problems.empty()) throw SetupError(problems);
-  if (settings.method == AbelMethod::tikhonov && settings.choice == RegularizationChoice::discrepancy &&
-      map.sigma.empty())
+  if (regularized && settings.choice == RegularizationChoice::discrepancy && map.sigma.empty())
     throw DataError(ErrorCode::missing_content, "density gradient",
-                    "the discrepancy principle needs the uncertainty of the vectors (none is "
-                    "given); use cross-validation, or give lambda");
+                    "the discrepancy principle requires the uncertainty of the vectors (none is given); use "
+                    "cross-validation, or give lambda");
 }
 
-/// Determines lambda from rows spread over the map.
-double determine_lambda(Eigen::MatrixXd const& projection, std::vector<RadialProfile> const& profiles,
-                        AxisymmetricSettings const& settings) {
-  if (settings.choice == RegularizationChoice::given) return settings.lambda;
-  std::vector<std::size_t> measured;
-  for (std::size_t row = 0; row < profiles.size(); ++row)
-    if (profiles[row].is_measured()) measured.push_back(row);
-  std::size_t const rows = measured.size(), count = std::min(rows, regularization_rows);
-  std::vector<RadialProfile> chosen;
-  for (std::size_t k = 0; k < count; ++k) chosen.push_back(profiles[measured[(2 * k + 1) * rows / (2 * count)]]);
-  return choose_regularization(projection, chosen, settings.choice);
-}
-
-/// Returns the smallest radius whose density a row determines, up to RadialProfile::last_measured(): with the direct
-/// method all radii between are measured, with the regularised one the smallest of them is.
-int find_first_radius(RadialProfile const& profile, AbelMethod method) {
+/// Returns the smallest radius whose density a row determines, up to RadialProfile::last_measured(): without
+/// regularisation all radii between are measured, with it the smallest of them is.
+int find_first_radius(RadialProfile const& profile, bool regularized) {
   int const last = profile.last_measured();
   int first = last;
-  if (method == AbelMethod::direct)
-    while (first > 0 && std::isfinite(profile.gradient[first - 1])) --first;
-  else
+  if (regularized)
     for (first = 1; first < last && !std::isfinite(profile.gradient[first]);) ++first;
+  else
+    while (first > 0 && std::isfinite(profile.gradient[first - 1])) --first;
   return first == 1 ? 0 : first;  // on the axis the gradient is known to be 0
 }
 
-/// Standard uncertainties of linear combinations of one row's vectors, with the correlation of overlapping windows.
-/// @param weights  [radii, columns]
+/// Computes the standard uncertainties of linear combinations of one row's vectors, with the correlation of overlapping
+/// windows.
+/// @param weights  coefficients of the linear combinations [radii, columns]
 Eigen::VectorXd propagate_row(Eigen::MatrixXd const& weights, GradientMap const& map, int row, double window) {
   Eigen::Index const columns = weights.cols();
   Eigen::MatrixXd scaled = weights;
@@ -79,8 +64,8 @@ Eigen::VectorXd propagate_row(Eigen::MatrixXd const& weights, GradientMap const&
   return variance.cwiseMax(0.0).cwiseSqrt();
 }
 
-/// Returns the rms of the even part of the gradient about the axis, relative to that of the odd part; NaN if the latter
-/// is 0.
+/// Returns the rms of the even part of the gradient about the axis, relative to the rms of the odd part; NaN if the odd
+/// part is 0.
 double compute_asymmetry(std::vector<RadialProfile> const& profiles) {
   double odd = 0.0, even = 0.0;
   for (RadialProfile const& profile : profiles) {
@@ -90,8 +75,9 @@ double compute_asymmetry(std::vector<RadialProfile> const& profiles) {
   return odd > 0.0 ? std::sqrt(even / odd) : not_a_number;
 }
 
-/// Throws if the gradients at equal distances from the axis are not opposite: if their odd part does not dominate, and
-/// the sum of their products is not negative by more than three times its scatter for independent gradients.
+/// Throws DataError if the gradients at equal distances on both sides of the axis do not have opposite signs. This is
+/// the case if the odd part of the gradients does not dominate, and the sum of their products is not negative by more
+/// than three times the scatter that it has for independent gradients.
 void require_opposite_sides(std::vector<RadialProfile> const& profiles, double axis, bool is_given) {
   double odd = 0.0, even = 0.0, product_squares = 0.0;
   for (RadialProfile const& profile : profiles) {
@@ -110,7 +96,7 @@ void require_opposite_sides(std::vector<RadialProfile> const& profiles, double a
 }
 
 /// Returns the rms of the gradient in the outer 5 % of the measured radii of each row, relative to that of all radii,
-/// without the part that its uncertainty explains; NaN: the gradient is within its uncertainty.
+/// after subtraction of the part that its uncertainty explains; NaN if the gradient does not exceed its uncertainty.
 double compute_border_gradient(std::vector<RadialProfile> const& profiles, bool has_sigma) {
   double all = 0.0, border = 0.0, count_all = 0.0, count_border = 0.0;
   for (RadialProfile const& profile : profiles) {
@@ -164,19 +150,17 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
   result.border_gradient = compute_border_gradient(profiles, !projected.sigma.empty());
 
   // Invert row by row
-  bool const is_direct = settings.method == AbelMethod::direct;
-  Eigen::MatrixXd const direct = is_direct ? make_gradient_inversion(radii) : Eigen::MatrixXd();
-  Eigen::MatrixXd const projection = is_direct ? Eigen::MatrixXd() : make_gradient_projection(radii);
-  if (!is_direct) result.lambda = determine_lambda(projection, profiles, settings);
+  AbelMethod const& method = abel_method(settings.method);
+  AbelInversion const prepared = method.prepare(radii, profiles, settings);
+  result.lambda = prepared.lambda;
   result.grid = {radii, rows, {0.0, projected.grid.origin.y}, projected.grid.spacing};
   result.density.assign(result.grid.size(), not_a_number);
   result.sigma.assign(result.grid.size(), not_a_number);
   parallel_for(profiles.size(), [&](std::size_t r) {
     RadialProfile const& profile = profiles[r];
     if (!profile.is_measured()) return;
-    int const row = static_cast<int>(r), first = find_first_radius(profile, settings.method);
-    Eigen::MatrixXd const inversion =
-        is_direct ? direct : make_regularized_inversion(projection, profile, result.lambda);
+    int const row = static_cast<int>(r), first = find_first_radius(profile, method.regularized);
+    Eigen::MatrixXd const inversion = prepared.matrix(profile);
     Eigen::VectorXd const excess = inversion * profile.filled_gradient();
     Eigen::VectorXd const sigma = projected.sigma.empty()
                                       ? Eigen::VectorXd::Constant(radii, not_a_number)

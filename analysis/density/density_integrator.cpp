@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "analysis/density/density_methods.h"
 #include "analysis/density/least_squares_solver.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
@@ -38,7 +39,7 @@ RegionMap count_references(GradientMap const& map, ReferenceDensity const& refer
   if (given == 0)
     throw SetupError({SetupProblem{"reference",
                                    "no reference density is given (the gradient determines the density up to a "
-                                   "constant); name a region of known density"}});
+                                   "constant); specify a region of known density"}});
   if (used == 0)
     throw DataError(ErrorCode::undetermined, "reference",
                     fmt::format("all {} nodes of the reference region are masked or invalid (no node fixes "
@@ -56,8 +57,8 @@ void reject_unreferenced(RegionMap const& regions) {
   }
   if (count == 0) return;
   throw DataError(ErrorCode::undetermined, "reference",
-                  fmt::format("{} of {} disconnected regions have no reference density ({}{}); name a "
-                              "reference region in each, or leave these regions out",
+                  fmt::format("{} of {} disconnected regions have no reference density ({}{}); specify a reference "
+                              "region in each of them, or exclude these regions",
                               count, regions.regions.size(), list, count > 5 ? "; ..." : ""));
 }
 
@@ -69,13 +70,15 @@ struct DensityIntegrator::System {
   RegionMap regions;
   ReferenceDensity reference;
   std::vector<std::uint8_t> determined, is_reference;
-  std::vector<int> unknown;                 ///< index of the node's unknown; not_unknown: reference or undetermined
-  std::vector<std::size_t> node;            ///< node of every unknown
-  std::vector<LineDifference> differences;  ///< of the determined nodes
-  std::vector<double> weight;               ///< of every difference
+  /// Index of the unknown of every node; not_unknown: reference node or undetermined node.
+  std::vector<int> unknown;
+  std::vector<std::size_t> node;            ///< index of the node of every unknown
+  std::vector<LineDifference> differences;  ///< difference equations of the determined nodes
+  std::vector<double> weight;               ///< weight of every difference equation
   std::optional<NormalEquations> equations;
 
-  /// Adds the contribution of difference k, of value r, to the right-hand side A^T W r of the normal equations.
+  /// Adds the contribution of difference equation k, whose right-hand side is `value`, to the right-hand side A^T W r
+  /// of the normal equations.
   void add_difference(Eigen::VectorXd& right_side, std::size_t k, double value) const {
     int const from = unknown[differences[k].from], to = unknown[differences[k].to];
     if (from != not_unknown) right_side[from] -= weight[k] * value;
@@ -157,13 +160,11 @@ DensityIntegrator::DensityIntegrator(GradientMap const& map, ReferenceDensity co
   }
 
   // Set up the equations and their weights
-  bool const is_poisson = settings.method == IntegrationMethod::poisson;
-  for (LineDifference const& d : make_line_differences(map, is_poisson ? EdgeRule::trapezoid : settings.rule)) {
+  IntegrationMethod const& method = integration_method(settings.method);
+  for (LineDifference const& d : make_line_differences(map, method.rule.value_or(settings.rule))) {
     if (system->determined[d.from] == 0) continue;
     system->differences.push_back(d);
-    double const spacing = d.axis == Axis::x ? map.grid.spacing.x : map.grid.spacing.y;
-    system->weight.push_back(is_poisson ? 0.5 * std::max(d.cells, 1) / (spacing * spacing)
-                                        : 1.0 / compute_variance(d, map.sigma));
+    system->weight.push_back(method.weight(d, map));
   }
   if (!system->node.empty()) system->factorize(settings.direct_limit);
   system_ = std::move(system);
@@ -193,7 +194,7 @@ std::vector<Vec2d> DensityIntegrator::compute_sensitivity(std::size_t node) cons
   GLADSTONE_EXPECTS(node < s.grid.size() && s.determined[node] != 0);
   std::vector<Vec2d> sensitivity(s.grid.size());
   if (s.unknown[node] == not_unknown) return sensitivity;
-  // The row of N^-1 A^T W B that belongs to the node: N is symmetric
+  // Compute the row of N^-1 A^T W B that belongs to the node; N is symmetric.
   Eigen::VectorXd unit = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(s.node.size()));
   unit[s.unknown[node]] = 1.0;
   Eigen::VectorXd const y = s.equations->solve(unit);

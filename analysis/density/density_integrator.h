@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "analysis/density/gradient_map.h"
@@ -12,37 +13,30 @@
 
 namespace gladstone::density {
 
-enum class IntegrationMethod {
-  /// Minimises sum of (density difference - line integral of the gradient)^2 / variance over all pairs of neighbouring
-  /// nodes. Rajendran, Zhang, Bane & Vlachos, Exp. Fluids 61 (2020) 239.
-  weighted_least_squares,
-  /// Five-point Poisson equation with the divergence of the gradient by central differences and natural Neumann
-  /// boundaries: the same minimisation by the trapezoid, without weights. For comparison.
-  poisson
-};
-
 /// Treatment of a region without reference nodes, whose density is undetermined by a constant.
 enum class UnreferencedRegions { error, leave_out };
 
 struct IntegrationSettings {
-  IntegrationMethod method = IntegrationMethod::weighted_least_squares;
-  EdgeRule rule = EdgeRule::four_point;  ///< of the weighted least squares
+  std::string method = "wls";            ///< one of integration_methods()
+  EdgeRule rule = EdgeRule::four_point;  ///< of methods without a rule of their own
   UnreferencedRegions unreferenced = UnreferencedRegions::error;
-  /// Largest number of unknowns that is solved by sparse Cholesky factorisation; above, by conjugate gradients.
+  /// Largest number of unknowns that is solved by sparse Cholesky factorisation; larger systems are solved by conjugate
+  /// gradients.
   std::size_t direct_limit = 400'000;
 };
 
 /// Integration of a gradient map by least squares, prepared once for any number of right-hand sides. The reference
-/// nodes have exactly the given density; all other borders, also of holes, have the natural (Neumann) condition that
-/// the density's normal derivative is that of the measurement. Second order in the spacing with the trapezoid, third at
-/// borders and fourth inside with the four-point rule, also next to borders and holes.
+/// nodes have exactly the given density. At all other borders, including those of holes, the natural (Neumann)
+/// condition applies: the normal derivative of the density equals the measured gradient. The error decreases with the
+/// square of the spacing for EdgeRule::trapezoid. For EdgeRule::four_point, it decreases with the fourth power of the
+/// spacing, and with the third power next to borders and holes.
 class DensityIntegrator {
  public:
-  /// @param map  gradient, with or without sigma: without it, all equations have equal weights
+  /// @param map  gradient; without sigma, all equations have equal weights
   /// @throws DataError   see check_gradient_map(); also if the reference nodes are all masked, or if a region has no
   ///                     reference node and `unreferenced` is `error`
-  /// @throws SetupError  if no reference node is given (no gauge), a reference value is infinite, or the reference
-  ///                     belongs to another grid
+  /// @throws SetupError  if no reference node is given, a reference value is infinite, or the number of reference
+  ///         values differs from the number of nodes
   DensityIntegrator(GradientMap const& map, ReferenceDensity const& reference,
                     IntegrationSettings const& settings = {});
   ~DensityIntegrator();
@@ -51,17 +45,18 @@ class DensityIntegrator {
 
   PlaneGrid const& grid() const;
   std::vector<Region> const& regions() const;
-  std::vector<int> const& region_labels() const;  ///< index of the node's region; -1: invalid node [grid.size()]
-  /// Nodes whose density is determined, including reference nodes [grid.size()]; 1 or 0.
+  std::vector<int> const& region_labels() const;  ///< index of the region of every node; -1: invalid node [grid.size()]
+  /// Returns 1 for nodes whose density is determined, including reference nodes, and 0 for other nodes [grid.size()].
   std::vector<std::uint8_t> const& determined() const;
   std::vector<std::uint8_t> const& reference_nodes() const;
   std::size_t unknowns() const;
 
   /// Integrates a gradient [grid.size()] with the reference density. NaN at nodes without a determined density.
   std::vector<double> integrate(std::span<Vec2d const> gradient) const;
-  /// Integrates an error of the gradient, i.e. with zero density at the reference nodes; zero at undetermined nodes.
+  /// Integrates an error of the gradient, with zero density at the reference nodes. The result is zero at undetermined
+  /// nodes.
   std::vector<double> integrate_error(std::span<Vec2d const> gradient_error) const;
-  /// Derivative of the density at one node with respect to every gradient component [m], [grid.size()].
+  /// Computes the derivative of the density at one node with respect to every gradient component [m], [grid.size()].
   /// @pre the node is determined
   std::vector<Vec2d> compute_sensitivity(std::size_t node) const;
 

@@ -21,7 +21,8 @@ double square_sum(std::span<double const> values) {
   return sum;
 }
 
-/// Variance of the density at one node: z^T r z for each component, with z = sensitivity times sigma.
+/// Computes the variance of the density at one node: the sum over both gradient components of z^T r z, where z
+/// is the sensitivity times sigma, and r the correlation of the vectors.
 double compute_node_variance(DensityIntegrator const& integrator, WindowCorrelation const& correlation,
                              std::span<Vec2d const> sigma, std::size_t node) {
   std::vector<Vec2d> const sensitivity = integrator.compute_sensitivity(node);
@@ -75,8 +76,8 @@ DensityUncertainty propagate_uncertainty(DensityIntegrator const& integrator, st
   std::size_t const size = integrator.grid().size();
   if (sigma.empty())
     throw DataError(ErrorCode::missing_content, "density gradient",
-                    "the vectors have no uncertainty (the density's cannot be propagated); correlate "
-                    "with an uncertainty method, or give sigma for every vector");
+                    "the vectors have no uncertainty (that of the density cannot be computed); correlate with an "
+                    "uncertainty method, or give sigma for every vector");
   GLADSTONE_EXPECTS(sigma.size() == size);
   if (settings.samples == 0) throw SetupError({SetupProblem{"samples", "expected at least 1 sample, got 0"}});
   WindowCorrelation const correlation(integrator.grid().columns, integrator.grid().rows, overlap);

@@ -10,7 +10,8 @@ namespace gladstone {
 /// numbers and Jets.
 inline double BesselJ1(double x) { return ::j1(x); }
 
-/// Returns the mean of a wave over a disc, relative to its amplitude: 2 J1(x) / x with x = pi diameter / wavelength.
+/// Returns the mean of a plane wave over a disc, relative to the wave's value at the disc's centre: 2 J1(x) / x with x
+/// = pi diameter / wavelength.
 template <class T>
 T disc_transfer(T diameter, T wavelength) {
   T const x = pi * diameter / wavelength;
@@ -18,9 +19,10 @@ T disc_transfer(T diameter, T wavelength) {
   return 2.0 * BesselJ1(x) / x;
 }
 
-/// Returns the transfer of a density wave's amplitude by the light cone of a point in focus: disc_transfer() of the
-/// cone's diameter at every slice of the field, averaged over the thickness with the slice's distance s from the dots
-/// as weight (F10 in docs/design.md). Valid for displacements much smaller than the wavelength.
+/// Returns the factor by which averaging over the light cone of a point in focus changes the amplitude of a density
+/// wave: disc_transfer() of the cone's diameter at every slice of the field, averaged over the thickness with the
+/// slice's distance s from the dots as weight (F10 in docs/design.md). Valid for displacements much smaller than the
+/// wavelength.
 /// @param pupil       diameter of the entrance pupil [m]
 /// @param z_b         distance from lens to dots [m]
 /// @param z_d         distance from the medium's mid-plane to the dots [m]

@@ -9,7 +9,8 @@
 namespace gladstone::density {
 namespace {
 
-/// Throws if `is_bad` holds for any valid node, with the number of such nodes and the first one.
+/// Throws DataError if `is_bad` is true for any valid node; the message contains the number of such nodes and the
+/// position of the first one.
 template <class Predicate>
 void reject_nodes(GradientMap const& map, Predicate const& is_bad, char const* problem, char const* remedy) {
   std::size_t count = 0, first = 0;
@@ -30,16 +31,17 @@ void check_gradient_map(GradientMap const& map) {
   std::size_t const size = map.grid.size();
   if (map.grid.columns < 2 || map.grid.rows < 2)
     throw DataError(ErrorCode::wrong_shape, "density gradient",
-                    fmt::format("the grid has {} x {} nodes (a density needs at least 2 x 2); "
+                    fmt::format("the grid has {} x {} nodes (a density requires at least 2 x 2); "
                                 "use smaller windows or more overlap",
                                 map.grid.columns, map.grid.rows));
   if (!(map.grid.spacing.x > 0.0 && map.grid.spacing.y > 0.0))
     throw DataError(ErrorCode::out_of_range, "density gradient",
                     "the spacing of the grid is not positive; check the vectors' positions");
   if (map.gradient.size() != size || map.valid.size() != size || (!map.sigma.empty() && map.sigma.size() != size))
-    throw DataError(ErrorCode::wrong_shape, "density gradient",
-                    fmt::format("{} gradients, {} sigmas and {} validity flags for {} nodes; give one of each per node",
-                                map.gradient.size(), map.sigma.size(), map.valid.size(), size));
+    throw DataError(
+        ErrorCode::wrong_shape, "density gradient",
+        fmt::format("got {} gradients, {} sigmas and {} validity flags for {} nodes; give one of each per node",
+                    map.gradient.size(), map.sigma.size(), map.valid.size(), size));
   if (std::none_of(map.valid.begin(), map.valid.end(), [](std::uint8_t v) { return v != 0; }))
     throw DataError(ErrorCode::no_valid_vector, "density gradient",
                     "no node is valid; check the mask and the validation of the vectors");
@@ -49,7 +51,7 @@ void check_gradient_map(GradientMap const& map) {
   if (map.sigma.empty()) return;
   reject_nodes(
       map, [&](std::size_t i) { return !is_finite(map.sigma[i]) || map.sigma[i].x <= 0.0 || map.sigma[i].y <= 0.0; },
-      "the uncertainty is not a positive number", "estimate it for every vector, or for none");
+      "the uncertainty is not a positive number", "estimate the uncertainty for every vector, or for none");
 }
 
 }  // namespace gladstone::density

@@ -28,7 +28,7 @@ struct PlaneGrid {
 /// over the thickness of the medium [kg/m^4].
 struct GradientMap {
   PlaneGrid grid;
-  std::vector<Vec2d> gradient;      ///< (d/dx, d/dy) [grid.size()]; ignored at invalid nodes
+  std::vector<Vec2d> gradient;      ///< gradient (d/dx, d/dy) of every node [grid.size()]; ignored at invalid nodes
   std::vector<Vec2d> sigma;         ///< standard uncertainty, unit of `gradient` [grid.size()]; empty: unknown
   std::vector<std::uint8_t> valid;  ///< 1: measured, 0: hole or masked [grid.size()]
   bool is_valid(int column, int row) const { return grid.contains(column, row) && valid[grid.index(column, row)] != 0; }

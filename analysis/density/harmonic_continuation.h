@@ -14,18 +14,18 @@ namespace gladstone::density {
 /// borders of the grid.
 class HarmonicContinuation {
  public:
-  /// @param determined  nodes with a density [grid.size()]: 1, holes: 0
+  /// @param determined  1 for nodes with a density, 0 for holes [grid.size()]
   /// @pre at least one node has a density
   HarmonicContinuation(PlaneGrid const& grid, std::span<std::uint8_t const> determined);
   /// Replaces the values in the holes.
-  /// @param density  [grid.size()], ignored in the holes
+  /// @param density  density at every node [grid.size()]; ignored in the holes
   Eigen::VectorXd fill(std::span<double const> density) const;
 
  private:
   /// Link between a node in a hole and a neighbour that has a density.
   struct Link {
     std::size_t hole, node;
-    double weight;  ///< [1/m^2]
+    double weight;  ///< coefficient of the neighbour in the Laplace equation [1/m^2]
   };
   std::vector<std::size_t> hole_;
   std::vector<Link> outer_;

@@ -11,14 +11,16 @@ NormalEquations::NormalEquations(Matrix const& matrix, std::size_t direct_limit)
     direct_ = std::make_unique<Direct>(matrix_);
     if (direct_->info() == Eigen::Success) return;
     throw DataError(ErrorCode::undetermined, "density gradient",
-                    "the equations of the density are singular (weights differ too much); check the uncertainties");
+                    "the equations of the density are singular (the weights of the vectors differ too much); check the "
+                    "uncertainties");
   }
   preconditioner_ = std::make_unique<Preconditioner>(matrix_);
 }
 
 Eigen::VectorXd NormalEquations::solve(Eigen::VectorXd const& right_side) const {
   if (direct_) return direct_->solve(right_side);
-  // Preconditioned conjugate gradients. Eigen's class keeps its state in members and cannot be shared by threads
+  // Preconditioned conjugate gradients. Eigen's class is not used, because it stores its state in members and cannot be
+  // shared by threads.
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size()), residual = right_side;
   Eigen::VectorXd preconditioned = preconditioner_->solve(residual), direction = preconditioned;
   double const goal = 1e-10 * right_side.norm();

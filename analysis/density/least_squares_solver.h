@@ -8,9 +8,9 @@
 namespace gladstone::density {
 
 /// Solver of the normal equations N x = b for many right-hand sides, with N sparse, symmetric and positive definite.
-/// Sparse Cholesky factorisation (Eigen SimplicialLDLT, approximate minimum degree) up to `direct_limit` unknowns;
-/// above, conjugate gradients with an incomplete Cholesky preconditioner, to a relative residual of 1e-10. Calls of
-/// solve() may run in parallel.
+/// Sparse Cholesky factorisation (Eigen SimplicialLDLT, approximate minimum degree) up to `direct_limit` unknowns; for
+/// more unknowns, conjugate gradients with an incomplete Cholesky preconditioner, to a relative residual of 1e-10.
+/// Calls of solve() may run in parallel.
 class NormalEquations {
  public:
   using Matrix = Eigen::SparseMatrix<double>;

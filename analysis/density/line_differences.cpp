@@ -40,7 +40,7 @@ LineDifference make_difference(GradientMap const& map, int column, int row, Step
     add(0, 0.5);
     add(1, 0.5);
   }
-  // Cells on both sides of the edge
+  // Count the complete grid cells on both sides of the edge.
   for (int side : {-1, 1}) {
     int const dx = side * step.y, dy = side * step.x;
     d.cells += map.is_valid(column + dx, row + dy) && map.is_valid(column + step.x + dx, row + step.y + dy);

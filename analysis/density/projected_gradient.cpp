@@ -37,7 +37,7 @@ PixelGrid find_pixel_grid(DisplacementField const& field) {
   auto const rows = static_cast<std::size_t>(std::max(field.rows, 0));
   if (columns < 2 || rows < 2 || field.size() != columns * rows || field.displacement_px.size() != field.size())
     throw DataError(ErrorCode::wrong_shape, "vectors",
-                    fmt::format("{} vectors are not a grid of at least 2 x 2 (columns: {}, rows: {}); "
+                    fmt::format("{} vectors do not form a grid of at least 2 x 2 (columns: {}, rows: {}); "
                                 "interpolate scattered vectors onto a regular grid first",
                                 field.size(), field.columns, field.rows));
   Vec2d const first = field.position_px.front(), last = field.position_px.back();

@@ -15,7 +15,8 @@ namespace {
 
 using Weights = std::vector<std::pair<int, double>>;  ///< columns and their weights
 
-/// Interpolation weights at a position in columns; nullopt if a neighbouring node is invalid or outside.
+/// Returns the interpolation weights at a position in a row [columns]; nullopt if a neighbouring node is invalid or
+/// outside the grid.
 std::optional<Weights> interpolate_row(GradientMap const& map, int row, double position) {
   double const nearest = std::round(position);
   bool const is_at_node = std::abs(position - nearest) < 1e-9;

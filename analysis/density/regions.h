@@ -8,8 +8,8 @@
 
 namespace gladstone::density {
 
-/// Connected set of valid nodes: each node has a valid neighbour along x or y in the same set. A gradient determines
-/// the density of a region up to one constant.
+/// Connected set of valid nodes, in which neighbours along x or y are connected. A gradient determines the density of a
+/// region up to one constant.
 struct Region {
   std::size_t nodes = 0;                                               ///< number of nodes
   std::size_t reference_nodes = 0;                                     ///< number of nodes with given density

@@ -10,7 +10,7 @@
 namespace gladstone::density {
 namespace {
 
-/// Second differences of an even profile that is zero beyond its last radius.
+/// Returns the matrix of second differences of an even profile that is zero beyond its last radius.
 Eigen::MatrixXd make_second_differences(Eigen::Index n) {
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -21,7 +21,7 @@ Eigen::MatrixXd make_second_differences(Eigen::Index n) {
   return difference;
 }
 
-/// Inverse variances; the axis and radii without a measurement have no weight.
+/// Returns the inverse variances as weights; the axis and radii without a measurement have the weight 0.
 Eigen::VectorXd make_weights(RadialProfile const& profile) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(profile.gradient.size());
   for (Eigen::Index i = 1; i < weights.size(); ++i)

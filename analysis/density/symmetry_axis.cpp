@@ -13,7 +13,7 @@
 namespace gladstone::density {
 namespace {
 
-/// Gradient across the axis, less its mean and zero at invalid nodes and outside the grid.
+/// Gradient across the axis minus its mean; zero at invalid nodes and outside the grid.
 class CrossGradient {
  public:
   explicit CrossGradient(GradientMap const& map) : grid_(map.grid) {
@@ -31,7 +31,7 @@ class CrossGradient {
     return grid_.contains(column, row) ? value_[grid_.index(column, row)] : 0.0;
   }
 
-  /// Value between nodes by the cubic through four nodes.
+  /// Returns the value at a position between nodes, interpolated by the cubic through four nodes.
   double at(double column, int row) const {
     double const floor = std::floor(column), t = column - floor;
     int const i = static_cast<int>(floor);
@@ -80,7 +80,8 @@ double refine_centre(CrossGradient const& gradient, double start) {
   return 0.5 * (low + high);
 }
 
-/// Variance of the centre, sum (sigma g')^2 / (sum g'^2)^2 times the number of nodes with common errors [columns^2].
+/// Computes the variance of the centre, sum (sigma g')^2 / (sum g'^2)^2 times the number of nodes that share their
+/// errors because of the window overlap [columns^2].
 double compute_centre_variance(GradientMap const& map, CrossGradient const& gradient, WindowOverlap overlap) {
   if (map.sigma.empty()) return not_a_number;
   double weighted = 0.0, slopes = 0.0;

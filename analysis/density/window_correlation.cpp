@@ -11,7 +11,7 @@
 namespace gladstone::density {
 namespace {
 
-/// Throws if windows of `window` grid steps do not fit an axis of `size` nodes.
+/// Throws SetupError if windows of `window` grid steps do not fit into an axis of `size` nodes.
 void check_window(int size, double window) {
   if (window > 0.0 && std::isfinite(window) && window <= size) return;
   throw SetupError(

@@ -7,8 +7,8 @@
 namespace gladstone::density {
 
 /// Size of the interrogation windows relative to the distance between vectors, along x and y [1]: 1 / (1 - overlap).
-/// Values up to 1 mean vectors with independent errors. For weighted windows the size of the uniform window with the
-/// same noise: the effective window size.
+/// Values up to 1 mean vectors with independent errors. For weighted windows, use the effective window size: the size
+/// of the uniform window with the same noise.
 struct WindowOverlap {
   double x = 1.0;
   double y = 1.0;
@@ -17,24 +17,24 @@ struct WindowOverlap {
 };
 
 /// Checks that the size of the windows along each axis is positive, finite, and at most that of the grid.
-/// @throws SetupError  if it is not
+/// @throws SetupError if the size is out of this range
 void check_window_overlap(int columns, int rows, WindowOverlap overlap);
 
 /// Correlation of the errors of vectors whose interrogation windows overlap. Errors that are linear in the noise of the
-/// pixels correlate by the shared area of the two windows, for uniform windows of m grid steps
-///   r(i, j) = max(0, 1 - |i| / m_x) max(0, 1 - |j| / m_y)
-/// for vectors i columns and j rows apart (cf. Sciacchitano & Wieneke, Meas. Sci. Technol. 27 (2016) 084006). The
-/// two components of a vector are uncorrelated. The matrix of all correlations is the Kronecker product of two banded
-/// matrices, whose Cholesky factors are stored.
+///   pixels correlate in proportion to the area that the two windows share. For uniform windows of m grid steps, the
+///   correlation is r(i, j) = max(0, 1 - |i| / m_x) max(0, 1 - |j| / m_y) for vectors i columns and j rows apart (cf.
+///   Sciacchitano & Wieneke, Meas. Sci. Technol. 27 (2016) 084006). The two components of a vector are uncorrelated.
+///   The matrix of all correlations is the Kronecker product of two banded matrices, whose Cholesky factors are stored.
 class WindowCorrelation {
  public:
   /// @throws SetupError  see check_window_overlap()
   WindowCorrelation(int columns, int rows, WindowOverlap overlap);
 
-  /// Correlates independent values of unit variance: L z, so that the covariance of the result is r.
-  /// @param values  [rows columns], row by row
+  /// Converts independent values z of unit variance to correlated ones, L z, with the Cholesky factor L of r; the
+  /// covariance of the result is r.
+  /// @param values  one value per node, row by row [rows columns]
   std::vector<double> correlate(std::span<double const> values) const;
-  /// Applies the transposed factor: L^T z, whose squared length is z^T r z.
+  /// Applies the transposed Cholesky factor and returns L^T z, whose squared length is z^T r z.
   std::vector<double> correlate_transposed(std::span<double const> values) const;
 
  private:

@@ -27,7 +27,7 @@ std::vector<Vec2d> centres_of(InterrogationGrid const& grid) {
   return centres;
 }
 
-/// Computes the predictor of the next pass from the displacements at the nodes of this pass.
+/// Computes the predictor of the next pass from the displacements at the grid nodes of the current pass.
 DensePredictor predictor_of(InterrogationGrid const& grid, std::span<Vec2d const> measured, double smoothing,
                             int columns, int rows) {
   std::vector<GridVector> vectors(measured.size());

@@ -11,7 +11,8 @@
 namespace gladstone {
 namespace {
 
-/// One link of the chain: a stage and the term that leads to it; the first stage has no term.
+/// One link of the chain: a stage, and the term that is the difference from the previous stage; the first stage has no
+/// term.
 struct Link {
   std::string_view stage;
   std::string_view term;
@@ -38,7 +39,7 @@ std::span<Link const> links_of(BudgetChain chain) {
   return bos_chain;
 }
 
-using Differences = std::vector<Vec2d>;  // values of one term at the counted vectors; empty: unknown
+using Differences = std::vector<Vec2d>;  // values of one term at the counted vectors [px]; empty: unknown
 
 Vec2d mean(Differences const& values) {
   Vec2d sum{};
@@ -135,7 +136,7 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
     return values;
   };
 
-  // Assign a difference across missing stages to the first term of the gap.
+  // If stages are missing, assign the difference across the gap to the gap's first term.
   std::vector<Differences> differences(chain.size() - 1);
   std::vector<std::vector<std::string>> includes(chain.size() - 1);
   std::optional<std::size_t> first, last;

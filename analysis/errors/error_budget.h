@@ -24,17 +24,18 @@ enum class BudgetChain {
 };
 
 /// Returns the names of the stages in the order of the chain.
-/// - BOS: eq9 (small-angle theory), straight (straight oblique chief ray, each slice with its own distance to the
-///   dots), eq9_cone (aperture-averaged theory), thin_lens (ray truth at the point through an ideal lens), lens (ray
-///   truth through the actual lens), window (truth averaged over the interrogation window), estimator (window plus the
-///   mean estimator error over K patterns; only for repeats), noise_free (measurement on noise-free images), measured.
+/// - BOS: eq9 (small-angle theory), straight (straight oblique chief ray; each slice of the medium has its own distance
+///   to the dots), eq9_cone (aperture-averaged theory), thin_lens (ray truth at the point through an ideal lens), lens
+///   (ray truth through the actual lens), window (truth averaged over the interrogation window), estimator (window plus
+///   the mean estimator error over K patterns; only for repeats), noise_free (measurement on noise-free images),
+///   measured.
 /// - PIV: flow (velocity at the vector times dt, in the light sheet, mapped by the camera's local scale), ambient (ray
 ///   truth at the point without the medium), seen (ray truth with the medium), then window and all later stages as
 ///   above.
 std::vector<std::string_view> budget_stage_names(BudgetChain chain = BudgetChain::bos);
 
-/// Returns the names of the terms in the order of the chain. BOS: small_angle, cone, refraction, aberration, window,
-/// estimator, pattern, noise. PIV: projection, refraction, window, estimator, pattern, noise.
+/// Returns the names of the terms in the order of the chain. BOS chain: small_angle, cone, refraction, aberration,
+/// window, estimator, pattern, noise. PIV chain: projection, refraction, window, estimator, pattern, noise.
 std::vector<std::string_view> budget_term_names(BudgetChain chain = BudgetChain::bos);
 
 /// Statistics of the difference between consecutive stages over the counted vectors [px]. NaN (null in errors.json) if
@@ -45,9 +46,9 @@ struct BudgetTerm {
   /// assigned to the gap's first term and the other terms are NaN. (Vectors of external software without noise-free
   /// images: `estimator` includes `pattern` and `noise`.)
   std::vector<std::string> includes;
-  double bias_u_px, bias_v_px;      ///< mean
-  double random_u_px, random_v_px;  ///< standard deviation, normalised by N
-  double rms_px;                    ///< sqrt(mean(t_u^2 + t_v^2)/2)
+  double bias_u_px, bias_v_px;      ///< mean of the term
+  double random_u_px, random_v_px;  ///< standard deviation of the term, normalised by N
+  double rms_px;                    ///< sqrt(mean(t_u^2 + t_v^2)/2) of the term t
   bool known() const { return rms_px == rms_px; }
 };
 
@@ -61,27 +62,29 @@ struct CovarianceMatrix {
 /// Decomposition of the total difference between measurement and theory (or flow) into causes; the terms sum to the
 /// total.
 struct ErrorBudget {
-  std::size_t count = 0;          ///< number of vectors
-  std::vector<BudgetTerm> terms;  ///< in the order of budget_term_names()
-  BudgetTerm total;               ///< last available stage minus the first
-  /// C_ij = mean((t_i - mean t_i)(t_j - mean t_j)) per component [px^2]; NaN in rows and columns of unknown terms.
+  std::size_t count = 0;          ///< number of vectors over which the terms are averaged
+  std::vector<BudgetTerm> terms;  ///< terms in the order of budget_term_names()
+  BudgetTerm total;               ///< last available stage minus the first stage
+  /// Covariance of the terms, C_ij = mean((t_i - mean t_i)(t_j - mean t_j)), for u and for v [px^2]; NaN in rows and
+  /// columns of unknown terms.
   CovarianceMatrix covariance_u, covariance_v;
-  /// (C_u + C_v)/2. A diagonal entry is the mean square fluctuation of the term per component; the sum of all entries
-  /// is the mean square fluctuation of the total [px^2].
+  /// Mean covariance (C_u + C_v)/2. A diagonal entry is the mean square fluctuation of the term per component; the sum
+  /// of all entries is the mean square fluctuation of the total [px^2].
   CovarianceMatrix covariance;
   double closure_px = 0.0;       ///< largest |sum of terms - total| over vectors and components
-  double peak_locking_px = 0.0;  ///< see peak_locking(); NaN without window truth or without a measurement
+  double peak_locking_px = 0.0;  ///< magnitude of peak_locking(); NaN without window truth or without a measurement
 };
 
 /// Computes the budget of a measurement.
-/// @param stages  in any order; missing stages may be omitted; each has mask.size() displacements
-/// @param mask    common mask; vectors at which an available stage is not finite are also excluded
+/// @param stages stages in any order, with mask.size() displacements each; stages that are not available may be omitted
+/// @param mask vectors to count; vectors at which an available stage is not finite are also excluded
 /// @pre stage names are known and unique
 ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& mask,
                          BudgetChain chain = BudgetChain::bos);
 
 /// Returns the magnitude of peak locking: the rms, over 20 bins of the fractional part of the true displacement (0.05
-/// px each, both components pooled, empty bins skipped), of the mean error in the bin [px]. NaN if no vector counts.
+/// px each, both components pooled, empty bins skipped), of the mean error in the bin [px]. NaN if there are no vectors
+/// with a finite truth and error.
 double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px);
 
 }  // namespace gladstone

@@ -11,27 +11,21 @@
 namespace gladstone {
 namespace {
 
-/// Errors of the counted vectors, and the number of all vectors.
-struct Errors {
-  std::vector<Vec2d> error_px;
-  std::size_t total = 0;
-};
-
-double mean(Errors const& errors, double Vec2d::*component) {
+double mean(ErrorSample const& errors, double Vec2d::*component) {
   if (errors.error_px.empty()) return not_a_number;
   double sum = 0.0;
   for (Vec2d const& e : errors.error_px) sum += e.*component;
   return sum / static_cast<double>(errors.error_px.size());
 }
 
-double deviation(Errors const& errors, double Vec2d::*component) {
+double deviation(ErrorSample const& errors, double Vec2d::*component) {
   double const centre = mean(errors, component);
   double sum = 0.0;
   for (Vec2d const& e : errors.error_px) sum += (e.*component - centre) * (e.*component - centre);
   return std::sqrt(sum / static_cast<double>(errors.error_px.size()));  // 0/0 is NaN for no vectors
 }
 
-double rms(Errors const& errors, double largest) {
+double rms(ErrorSample const& errors, double largest) {
   double sum = 0.0;
   std::size_t count = 0;
   for (Vec2d const& e : errors.error_px) {
@@ -42,48 +36,63 @@ double rms(Errors const& errors, double largest) {
   return count == 0 ? not_a_number : std::sqrt(0.5 * sum / static_cast<double>(count));
 }
 
-double percentile_95(Errors const& errors) {
+double percentile_95(ErrorSample const& errors) {
   std::vector<double> magnitude(errors.error_px.size());
   std::transform(errors.error_px.begin(), errors.error_px.end(), magnitude.begin(), [](Vec2d e) { return length(e); });
   return quantile(std::move(magnitude), 0.95);
 }
 
-double gross_fraction(Errors const& errors) {
-  if (errors.error_px.empty()) return not_a_number;
-  auto const gross =
-      std::count_if(errors.error_px.begin(), errors.error_px.end(), [](Vec2d e) { return length(e) > gross_error_px; });
-  return static_cast<double>(gross) / static_cast<double>(errors.error_px.size());
+double count_gross(ErrorSample const& errors) {
+  return static_cast<double>(std::count_if(errors.error_px.begin(), errors.error_px.end(),
+                                           [](Vec2d e) { return length(e) > gross_error_px; }));
 }
 
-double valid_fraction(Errors const& errors) {
+double gross_fraction(ErrorSample const& errors) {
+  if (errors.error_px.empty()) return not_a_number;
+  return count_gross(errors) / static_cast<double>(errors.error_px.size());
+}
+
+double valid_fraction(ErrorSample const& errors) {
   return errors.total == 0 ? not_a_number
                            : static_cast<double>(errors.error_px.size()) / static_cast<double>(errors.total);
 }
 
-/// Error measure with its name in errors.json, study.csv and the reports. A new measure requires one more row below.
-struct Measure {
-  std::string_view name;
-  double (*of)(Errors const&);
-};
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::array<Measure, 10> measures{{
-    {"count", [](Errors const& e) { return static_cast<double>(e.error_px.size()); }},
-    {"valid_fraction", valid_fraction},
-    {"bias_u_px", [](Errors const& e) { return mean(e, &Vec2d::x); }},
-    {"bias_v_px", [](Errors const& e) { return mean(e, &Vec2d::y); }},
-    {"random_u_px", [](Errors const& e) { return deviation(e, &Vec2d::x); }},
-    {"random_v_px", [](Errors const& e) { return deviation(e, &Vec2d::y); }},
-    {"rms_px", [](Errors const& e) { return rms(e, infinity); }},
-    {"rms_without_gross_px", [](Errors const& e) { return rms(e, gross_error_px); }},
-    {"p95_px", percentile_95},
-    {"gross_fraction", gross_fraction},
-}};
 
-Errors collect(std::span<Vec2d const> measured, std::span<Vec2d const> truth, VectorMask const& mask,
-               std::size_t total) {
+/// Table of all error measures.
+constexpr std::array measures{
+    ErrorMeasure{"count", [](ErrorSample const& e) { return static_cast<double>(e.error_px.size()); }},
+    ErrorMeasure{"valid_fraction", valid_fraction},
+    ErrorMeasure{.name = "gross", .compute = count_gross, .of_case = false},
+    ErrorMeasure{"bias_u_px", [](ErrorSample const& e) { return mean(e, &Vec2d::x); }, "bias u"},
+    ErrorMeasure{"bias_v_px", [](ErrorSample const& e) { return mean(e, &Vec2d::y); }, "bias v"},
+    ErrorMeasure{.name = "random_u_px",
+                 .compute = [](ErrorSample const& e) { return deviation(e, &Vec2d::x); },
+                 .heading = "random u",
+                 .of_benchmark = false},
+    ErrorMeasure{.name = "random_v_px",
+                 .compute = [](ErrorSample const& e) { return deviation(e, &Vec2d::y); },
+                 .heading = "random v",
+                 .of_benchmark = false},
+    ErrorMeasure{"rms_px", [](ErrorSample const& e) { return rms(e, infinity); }, "rms"},
+    ErrorMeasure{"rms_without_gross_px", [](ErrorSample const& e) { return rms(e, gross_error_px); }},
+    ErrorMeasure{"p95_px", percentile_95, "p95"},
+    ErrorMeasure{.name = "gross_fraction", .compute = gross_fraction, .heading = "gross", .of_benchmark = false},
+};
+
+/// Returns the row of a measure.
+std::size_t find_measure(std::string_view name) {
+  auto const found =
+      std::find_if(measures.begin(), measures.end(), [name](ErrorMeasure const& row) { return row.name == name; });
+  GLADSTONE_EXPECTS(found != measures.end());
+  return static_cast<std::size_t>(found - measures.begin());
+}
+
+ErrorSample collect(std::span<Vec2d const> measured, std::span<Vec2d const> truth, VectorMask const& mask,
+                    std::size_t total) {
   GLADSTONE_EXPECTS(measured.size() == truth.size());
   GLADSTONE_EXPECTS(mask.empty() || mask.size() == measured.size());
-  Errors errors;
+  ErrorSample errors;
   errors.total = total == 0 ? measured.size() : total;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!mask.empty() && mask[i] == 0) continue;
@@ -119,30 +128,33 @@ VectorMask common_mask(DisplacementField const& measured, std::span<std::span<Ve
   return mask;
 }
 
+std::span<ErrorMeasure const> all_error_measures() { return measures; }
+
+ErrorSummary::ErrorSummary() : values_(measures.size()) {}
+
+ErrorSummary::ErrorSummary(ErrorSample const& sample) {
+  for (ErrorMeasure const& measure : measures) values_.push_back(measure.compute(sample));
+}
+
+double ErrorSummary::operator[](std::string_view name) const { return values_[find_measure(name)]; }
+double& ErrorSummary::operator[](std::string_view name) { return values_[find_measure(name)]; }
+
+std::vector<std::pair<std::string_view, double>> ErrorSummary::values(bool ErrorMeasure::*selected) const {
+  std::vector<std::pair<std::string_view, double>> found;
+  for (std::size_t i = 0; i < measures.size(); ++i)
+    if (measures[i].*selected) found.emplace_back(measures[i].name, values_[i]);
+  return found;
+}
+
 ErrorSummary summarize_errors(std::span<Vec2d const> measured, std::span<Vec2d const> truth, VectorMask const& mask,
                               std::size_t total) {
-  Errors const errors = collect(measured, truth, mask, total);
-  ErrorSummary summary;
-  summary.count = errors.error_px.size();
-  summary.valid_fraction = valid_fraction(errors);
-  summary.bias_u_px = mean(errors, &Vec2d::x);
-  summary.bias_v_px = mean(errors, &Vec2d::y);
-  summary.random_u_px = deviation(errors, &Vec2d::x);
-  summary.random_v_px = deviation(errors, &Vec2d::y);
-  summary.rms_px = rms(errors, infinity);
-  summary.rms_without_gross_px = rms(errors, gross_error_px);
-  summary.p95_px = percentile_95(errors);
-  summary.gross_fraction = gross_fraction(errors);
-  return summary;
+  return ErrorSummary(collect(measured, truth, mask, total));
 }
 
 std::vector<std::pair<std::string_view, double>> error_measures(std::span<Vec2d const> measured,
                                                                 std::span<Vec2d const> truth, VectorMask const& mask,
                                                                 std::size_t total) {
-  Errors const errors = collect(measured, truth, mask, total);
-  std::vector<std::pair<std::string_view, double>> values;
-  for (Measure const& measure : measures) values.emplace_back(measure.name, measure.of(errors));
-  return values;
+  return summarize_errors(measured, truth, mask, total).values(&ErrorMeasure::of_case);
 }
 
 }  // namespace gladstone

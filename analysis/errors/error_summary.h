@@ -12,41 +12,72 @@
 
 namespace gladstone {
 
-/// Selection of the vectors that a comparison counts: nonzero to count. All comparisons of a case use one mask.
+/// Selection of the vectors to which a comparison refers, one entry per vector: nonzero if the vector is counted. All
+/// comparisons of a case use the same mask.
 using VectorMask = std::vector<std::uint8_t>;
 
 /// Selects the vectors with status valid or replaced for which the measurement and every reference are finite.
 /// @param references  displacements at the same vectors, [measured.size()] each; empty ones are ignored
 VectorMask common_mask(DisplacementField const& measured, std::span<std::span<Vec2d const> const> references);
 
-/// Errors larger than this are gross errors: the correlation found a wrong peak [px].
+/// Magnitude above which an error is a gross error, caused by a wrong correlation peak [px].
 inline constexpr double gross_error_px = 1.0;
 
-/// Statistics of the error, measured minus true displacement. If no vector counts, `count` is 0 and all other numbers
-/// except `valid_fraction` are NaN (null in errors.json).
-struct ErrorSummary {
-  std::size_t count = 0;        ///< number of counted vectors
-  double valid_fraction;        ///< `count` divided by the number of all vectors of the measurement [1]
-  double bias_u_px, bias_v_px;  ///< mean error
-  /// Standard deviation of the error, normalised by N so that rms_px^2 is the mean of bias^2 + random^2 over u and v.
-  double random_u_px, random_v_px;
-  double rms_px;                ///< sqrt(mean(e_u^2 + e_v^2)/2)
-  double rms_without_gross_px;  ///< rms_px over the vectors without gross error
-  /// 95th percentile of the magnitude, interpolated linearly between order statistics.
-  double p95_px;
-  /// Fraction of the counted vectors whose error exceeds gross_error_px in magnitude [1].
-  double gross_fraction;
+/// Errors of the counted vectors, measured minus true displacement [px], and the number of all vectors.
+struct ErrorSample {
+  std::vector<Vec2d> error_px;
+  std::size_t total = 0;
+};
+
+/// Statistic of the error. A new one requires one more row in error_summary.cpp.
+struct ErrorMeasure {
+  std::string_view name;  ///< with its unit as suffix: key in errors.json, study.csv and benchmark.csv
+  double (*compute)(ErrorSample const&);
+  char const* heading = nullptr;  ///< column of the printed table; null: not in it
+  bool of_case = true;            ///< one of error_measures()
+  bool of_benchmark = true;       ///< one of the numbers of a BenchmarkScore
+};
+
+/// Returns all error measures, in the order of their output:
+/// - `count`: number of counted vectors
+/// - `valid_fraction`: `count` divided by the number of all vectors of the measurement
+/// - `gross`, `gross_fraction`: number and fraction of the counted vectors whose error exceeds gross_error_px in
+/// magnitude
+/// - `bias_u_px`, `bias_v_px`: mean error
+/// - `random_u_px`, `random_v_px`: standard deviation of the error, normalised by N so that rms_px^2 is the mean of
+///   bias^2 + random^2 over u and v
+/// - `rms_px`: sqrt(mean(e_u^2 + e_v^2)/2); `rms_without_gross_px`: over the vectors without gross error
+/// - `p95_px`: 95th percentile of the magnitude, interpolated linearly between order statistics
+std::span<ErrorMeasure const> all_error_measures();
+
+/// Values of all error measures. If no vector counts, the numbers of vectors are 0 and all other values except
+/// `valid_fraction` are NaN (null in errors.json).
+class ErrorSummary {
+ public:
+  /// Sets all values to 0.
+  ErrorSummary();
+  explicit ErrorSummary(ErrorSample const& sample);
+
+  /// Return the value of a measure. @pre the name is that of an error measure
+  double operator[](std::string_view name) const;
+  double& operator[](std::string_view name);
+  /// Returns a number of vectors. @param name  "count" or "gross"
+  std::size_t count(std::string_view name = "count") const { return static_cast<std::size_t>((*this)[name]); }
+  /// Returns the names and values of the selected measures.
+  std::vector<std::pair<std::string_view, double>> values(bool ErrorMeasure::*selected) const;
+
+ private:
+  std::vector<double> values_;
 };
 
 /// Computes error statistics.
-/// @param measured,truth  of equal length [px]
-/// @param mask            of the same length, or empty: every vector counts
+/// @param measured,truth  displacements, of equal length [px]
+/// @param mask            vectors to count, of the same length; empty: all vectors
 /// @param total           number of vectors to which valid_fraction refers; 0: measured.size()
 ErrorSummary summarize_errors(std::span<Vec2d const> measured, std::span<Vec2d const> truth, VectorMask const& mask,
                               std::size_t total = 0);
 
-/// Returns every error measure with its name in errors.json and study.csv, in the order of the columns, starting with
-/// count.
+/// Returns the error measures of errors.json and study.csv by name, in the order of the columns, starting with count.
 std::vector<std::pair<std::string_view, double>> error_measures(std::span<Vec2d const> measured,
                                                                 std::span<Vec2d const> truth, VectorMask const& mask,
                                                                 std::size_t total = 0);

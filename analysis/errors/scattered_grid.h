@@ -27,7 +27,7 @@ struct DisplacementMaps {
 /// spacing sqrt(area / count), which smooths about as much as linear interpolation between neighbours.
 /// If a node is extrapolated (fewer than four dots, or a fit that amplifies the variance of the dots), h is increased
 /// up to fourfold; if the fit with the largest h still amplifies the variance more than fourfold, the node is NaN.
-/// @param position_px,displacement_px  of the dots; dots with NaN are ignored
+/// @param position_px,displacement_px positions and displacements of the dots; dots with NaN are ignored
 DisplacementMaps map_scattered(std::span<Vec2d const> position_px, std::span<Vec2d const> displacement_px,
                                MapGrid const& grid);
 

@@ -1,61 +1,13 @@
 #include "analysis/preparation/frame_preparation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "analysis/preparation/frame_changes.h"
 #include "render/base/contracts.h"
 
 namespace gladstone {
 namespace {
-
-struct NamedChange {
-  char const* name;
-  FrameChange (*read)(SetupTable& table, FramePreparation& preparation);
-};
-
-/// All masks.
-constexpr std::array masks{
-    NamedChange{"polygon", read_polygon_mask},
-    NamedChange{"image", read_image_mask},
-    NamedChange{"intensity", read_intensity_mask},
-};
-
-/// All preprocessing steps.
-constexpr std::array steps{
-    NamedChange{"background", read_background}, NamedChange{"high_pass", read_high_pass},
-    NamedChange{"clahe", read_clahe},           NamedChange{"intensity_cap", read_intensity_cap},
-    NamedChange{"min_max", read_min_max},
-};
-
-template <class Rows>
-std::vector<std::string> names_of(Rows const& rows) {
-  std::vector<std::string> names;
-  for (NamedChange const& row : rows) names.emplace_back(row.name);
-  return names;
-}
-
-std::string quoted(std::vector<std::string> const& names) {
-  std::string text;
-  for (std::string const& name : names) text += (text.empty() ? "\"" : ", \"") + name + '"';
-  return text;
-}
-
-template <class Rows>
-void read_changes(SetupTable& correlate, std::string const& key, Rows const& rows, std::vector<FrameChange>& changes,
-                  FramePreparation& preparation) {
-  for (SetupTable& table : correlate.tables(key)) {
-    std::string const kind = table.kind_word("kind", "", names_of(rows));  // "" if the value was rejected
-    if (!table.has("kind")) {
-      table.problem("kind", "is missing; give " + quoted(names_of(rows)), ErrorCode::missing_key);
-      table.suppress_unread_keys();
-    }
-    for (NamedChange const& row : rows)
-      if (kind == row.name) changes.push_back(row.read(table, preparation));
-  }
-}
 
 /// Replaces invalid pixels by the mean grey level of the valid ones.
 void fill_unknown(PreparedFrames& frames) {
@@ -73,14 +25,6 @@ void fill_unknown(PreparedFrames& frames) {
 }
 
 }  // namespace
-
-FramePreparation read_frame_preparation(SetupTable& correlate, PreparedSet set) {
-  FramePreparation preparation;
-  preparation.set = set;
-  read_changes(correlate, "mask", masks, preparation.masks, preparation);
-  read_changes(correlate, "preprocess", steps, preparation.steps, preparation);
-  return preparation;
-}
 
 HostFrames prepare_frames(StoredFrames const& frames, FramePreparation const& preparation) {
   Image<double> const &reference = frames.reference(), &flow = frames.flow();

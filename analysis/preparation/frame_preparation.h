@@ -7,28 +7,21 @@
 
 #include "analysis/preparation/sequence_background.h"
 #include "render/base/frame_pair.h"
-#include "render/setup/setup_table.h"
 
 /// Preparation of frames before correlation: masks, and preprocessing steps that change grey levels.
 namespace gladstone {
 
 /// Pair of frames during the preparation.
 struct PreparedFrames : FramePair<double> {
-  Image<double> known;  ///< 1 where both frames are valid, else 0; the grey levels of invalid pixels are meaningless
+  /// 1 at pixels that are valid in both frames, else 0; the grey levels of invalid pixels are meaningless.
+  Image<double> known;
 };
 
 /// Operation of one mask or step with its settings. @throws DataError if its files do not match the frames
 using FrameChange = std::function<void(PreparedFrames& frames)>;
 
-/// Frames that are prepared together.
-enum class PreparedSet {
-  pair,     ///< two frames: "background" steps require `frame`
-  sequence  ///< many pairs: "background" steps without `frame` subtract the background of the sequence
-};
-
-/// Contents of the arrays [[correlate.mask]] and [[correlate.preprocess]] of a setup, in their order.
+/// Masks and preprocessing steps of an evaluation, in the order of their application.
 struct FramePreparation {
-  PreparedSet set = PreparedSet::pair;
   std::vector<FrameChange> masks;
   std::vector<FrameChange> steps;
   std::vector<std::string> files;  ///< images that the masks and steps read
@@ -37,9 +30,6 @@ struct FramePreparation {
 
   bool empty() const { return masks.empty() && steps.empty(); }
 };
-
-/// @param correlate  table [correlate]; problems are collected in its document
-FramePreparation read_frame_preparation(SetupTable& correlate, PreparedSet set = PreparedSet::pair);
 
 /// Applies masks and preprocessing steps. Pixels that are masked or not finite in either frame become NaN in both, and
 /// correlators ignore them. Masks are evaluated on the original frames and applied after the steps. During the steps,

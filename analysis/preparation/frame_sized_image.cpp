@@ -11,7 +11,7 @@ Image<double> read_frame_sized_image(std::string const& file, Image<double> cons
   Image<double> picture = read_image(file);
   if (picture.columns() != frame.columns() || picture.rows() != frame.rows())
     throw DataError(ErrorCode::wrong_shape, file,
-                    fmt::format("is {} x {} px, but the frames are {} x {} px (they are combined pixel by "
+                    fmt::format("is {} x {} px, but the frames are {} x {} px (the two are combined pixel by "
                                 "pixel); give an image of that size",
                                 picture.columns(), picture.rows(), frame.columns(), frame.rows()));
   if (std::size_t const bad = count_not_finite(picture); bad > 0)

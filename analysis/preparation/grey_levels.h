@@ -12,7 +12,8 @@ Matrix matrix_view(Image<double>& picture) {
   return Matrix(picture.rows(), picture.columns(), picture.data());
 }
 
-/// Calls change(levels, known) for both frames; `known` is nonzero at valid pixels. Does nothing if no pixel is valid.
+/// Calls change(levels, known) for each of the two frames; `known` is nonzero at valid pixels. Does nothing if no pixel
+/// is valid.
 template <class Matrix, class Change>
 void for_both(PreparedFrames& frames, Change const& change) {
   if (std::all_of(frames.known.begin(), frames.known.end(), [](double known) { return known == 0.0; })) return;

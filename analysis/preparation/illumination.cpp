@@ -6,11 +6,12 @@
 namespace gladstone {
 namespace {
 
-constexpr int blocks_across = 8;  // blocks along the shorter side
-constexpr int least_block = 16;   // [px]
+constexpr int blocks_across = 8;  // number of blocks along the image's shorter side
+constexpr int least_block = 16;   // minimum side of a block [px]
 
-/// Interpolation weights among equal blocks: the two adjacent block centres and the weight of the second, which is
-/// outside of [0, 1] near the edges.
+/// Position of a pixel between the centres of two adjacent blocks, along one axis: the two blocks, and the
+/// interpolation weight of the second. The weight is outside of [0, 1] near the image's edges, where values are
+/// extrapolated.
 struct BlockPlace {
   int first, second;
   double share;

@@ -9,7 +9,7 @@ namespace {
 
 using ReadImage = std::function<std::optional<Image<double>>(std::size_t k)>;
 
-constexpr std::size_t most_median_bytes = std::size_t{256} << 20;  // memory of compute_median()
+constexpr std::size_t most_median_bytes = std::size_t{256} << 20;  // maximum memory of compute_median() [bytes]
 
 Image<double> compute_mean(std::size_t count, ReadImage const& read) {
   Image<double> sum;
@@ -50,7 +50,7 @@ Image<double> compute_median(std::size_t count, ReadImage const& read) {
   Image<double> median;
   std::size_t band_pixels = 0;
   for (std::size_t first = 0; first == 0 || first < median.size(); first += band_pixels) {
-    std::vector<std::vector<double>> levels;  // of the band, one array per image
+    std::vector<std::vector<double>> levels;  // levels of a band of pixels, one array per image
     for (std::size_t k = 0; k < count; ++k) {
       std::optional<Image<double>> const image = read(k);
       if (!image) continue;

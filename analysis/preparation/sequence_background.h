@@ -7,15 +7,15 @@
 
 #include "render/base/image.h"
 
-/// Backgrounds that are computed from many frames.
+/// Background images that are computed from many frames.
 namespace gladstone {
 
 /// Background of a sequence's own frames. A "background" step without `frame` subtracts it from every pair; its images
 /// must be computed before the first pair is prepared.
 struct SequenceBackground {
   std::string statistic;    ///< "minimum", "mean" or "median"
-  Image<double> reference;  ///< subtracted from frames A
-  Image<double> flow;       ///< subtracted from frames B
+  Image<double> reference;  ///< background image subtracted from each frame A
+  Image<double> flow;       ///< background image subtracted from each frame B
 };
 
 /// Names accepted as the statistic of a background.

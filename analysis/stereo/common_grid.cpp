@@ -8,11 +8,13 @@
 namespace gladstone::stereo {
 namespace {
 
-/// Bounding box of a camera's vectors on the plane, and their mean distance there.
+/// Bounding box of a camera's vectors projected onto the plane, and the mean distance between neighbouring vectors on
+/// the plane.
 struct Footprint {
   Vec2d low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   Vec2d high = -low;
-  double spacing = 0.0;  ///< [m]; NaN: no neighbouring vectors meet the plane
+  /// Mean distance of neighbouring vectors [m]; NaN: no lines of sight of neighbouring vectors meet the plane.
+  double spacing = 0.0;
 };
 
 Footprint find_footprint(PinholeCamera const& camera, DisplacementField const& field, ObjectPlane const& plane,

@@ -10,7 +10,7 @@
 namespace gladstone::stereo {
 namespace {
 
-/// Interpolates an image. @return NaN less than two pixels inside its border
+/// Interpolates an image. @return NaN at positions outside the image or less than two pixels inside its border
 double sample_image(Image<double> const& image, Vec2d at) {
   if (!(at.x >= 1.0 && at.y >= 1.0 && at.x < image.columns() - 2 && at.y < image.rows() - 2)) return not_a_number;
   int const column = static_cast<int>(at.x), row = static_cast<int>(at.y);
@@ -31,7 +31,7 @@ NodeGrid find_common_view(std::array<PinholeCamera const*, 2> const& cameras,
   Vec2d low{-infinity, -infinity}, high{infinity, infinity};
   for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
     Vec2d lowest{infinity, infinity}, highest = -lowest;
-    for (double const x : {0.0, 0.5, 1.0})  // corners and middles of the edges
+    for (double const x : {0.0, 0.5, 1.0})  // corners of the image and middles of its edges
       for (double const y : {0.0, 0.5, 1.0}) {
         auto const at =
             intersect_plane(*cameras[camera], {x * (size[camera][0] - 1), y * (size[camera][1] - 1)}, plane);

@@ -24,15 +24,15 @@ struct Interval {
   double fraction;
 };
 
-/// @return index -1 outside the grid
+/// @return interval of a coordinate; its index is -1 outside the grid
 Interval find_interval(double coordinate, int nodes) {
-  constexpr double slack = 1e-9;  // of the distance between nodes, for points on the border
+  constexpr double slack = 1e-9;  // tolerance for points on the border, relative to the distance between nodes
   if (!(coordinate >= -slack && coordinate <= nodes - 1 + slack)) return {-1, 0.0};
   int const index = std::clamp(static_cast<int>(std::floor(coordinate)), 0, nodes - 2);
   return {index, std::clamp(coordinate - index, 0.0, 1.0)};
 }
 
-/// Correlation of the errors of two vectors a distance apart.
+/// Returns the correlation of the errors of two vectors at a distance (dx_px, dy_px).
 double error_correlation(double dx_px, double dy_px, double window_px) {
   if (dx_px == 0.0 && dy_px == 0.0) return 1.0;
   if (!(window_px > 0.0)) return 0.0;
@@ -42,7 +42,7 @@ double error_correlation(double dx_px, double dy_px, double window_px) {
 }  // namespace
 
 bool is_regular_grid(DisplacementField const& field) {
-  constexpr double tolerance_px = 0.02;  // twice that of arrange_as_grid()
+  constexpr double tolerance_px = 0.02;  // twice the tolerance of arrange_as_grid()
   if (field.columns < 2 || field.rows < 2) return false;
   if (field.size() != static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows)) return false;
   Vec2d const spacing = find_spacing(field), first = field.position_px.front();

@@ -16,16 +16,16 @@ bool is_regular_grid(DisplacementField const& field);
 /// 1153), or bilinear where one of the 4 x 4 neighbours is missing.
 class InterpolatedField {
  public:
-  /// @param field      outlives this object; is_regular_grid()
+  /// @param field  vectors on a regular grid (is_regular_grid()); must outlive this object
   /// @param window_px  size of the interrogation windows, by which the errors of neighbouring vectors are correlated:
-  ///                   (1 - |dx| / window) (1 - |dy| / window) at a distance (dx, dy); 0: independent errors
+  /// (1 - |dx| / window) (1 - |dy| / window) at a distance (dx, dy); 0: independent errors
   InterpolatedField(DisplacementField const& field, double window_px);
 
   struct Vector {
     Vec2d displacement_px;
-    Vec2d sigma_px;  ///< NaN: a neighbour has no uncertainty
+    Vec2d sigma_px;  ///< standard uncertainty [px]; NaN: one of the interpolated vectors has no uncertainty
   };
-  /// @return nullopt outside the grid and next to missing vectors
+  /// @return vector interpolated at a position; nullopt outside the grid and next to missing vectors
   std::optional<Vector> vector(Vec2d position_px) const;
   std::optional<Vec2d> displacement(Vec2d position_px) const;
 

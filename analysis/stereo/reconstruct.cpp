@@ -22,9 +22,9 @@ struct View {
   InterpolatedField field;
   std::optional<Dewarping> const& dewarping;
 
-  /// Projects a point into the image on which the vectors were measured. An image is dewarped with the calibrated
-  /// camera, whichever camera recorded it.
-  /// @param camera  that recorded the image
+  /// Projects a point into the image on which the vectors were measured. If images are dewarped, the dewarping uses the
+  /// calibrated camera, even if `camera` differs from it.
+  /// @param camera  camera that recorded the image
   Vec2d project(PinholeCamera const& camera, Vec3d at) const {
     Vec2d const pixel = camera.project(at);
     if (!dewarping) return pixel;
@@ -43,7 +43,7 @@ struct View {
 
 /// Computes the derivatives of a projected point with respect to its position by central differences [px/m].
 Eigen::Matrix<double, 2, 3> differentiate_projection(View const& view, Vec3d at) {
-  constexpr double step = 1e-5;  // [m]; its square is negligible against the squared distance of the camera
+  constexpr double step = 1e-5;  // step [m]; its square is negligible compared with the squared distance of the camera
   Eigen::Matrix<double, 2, 3> derivative;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3d moved{};
@@ -60,7 +60,7 @@ Covariance pack(Eigen::Matrix3d const& matrix) {
 
 /// Derivatives of a camera's two residuals, measured minus projected, with respect to its parameters.
 Eigen::Matrix<double, 2, parameter_count> differentiate_residual(View const& view, Vec3d at, Vec3d moved) {
-  constexpr double step_fraction = 1e-3;  // of the standard error, so that the response is linear
+  constexpr double step_fraction = 1e-3;  // step relative to the standard error, small enough for a linear response
   Eigen::Matrix<double, 2, parameter_count> derivative = Eigen::Matrix<double, 2, parameter_count>::Zero();
   PinholeCamera const& nominal = view.calibration->camera;
   std::vector<double> const& covariance = view.calibration->covariance;
@@ -73,7 +73,8 @@ Eigen::Matrix<double, 2, parameter_count> differentiate_residual(View const& vie
     Vec2d change = view.project_motion(below, at, moved) - view.project_motion(above, at, moved);
     auto const high = view.field.displacement(view.project(above, at)),
                low = view.field.displacement(view.project(below, at));
-    if (high && low) change += *high - *low;  // not at the border of the vectors
+    // the change of the interpolated vector is omitted at the border of the vectors
+    if (high && low) change += *high - *low;
     derivative.col(static_cast<Eigen::Index>(i)) << change.x / (2.0 * step), change.y / (2.0 * step);
   }
   return derivative;
@@ -121,10 +122,11 @@ class NodeSolver {
     return measured_ - Residuals(a.x, a.y, b.x, b.y);
   }
 
-  /// Iterates with the derivatives at the node: the projection of a symmetric motion is linear up to third order.
+  /// Finds the displacement iteratively, always with the derivatives at the node. They suffice because the projection
+  /// of a displacement symmetric about the node is linear except for terms of third order.
   bool find_displacement() {
     constexpr int max_iterations = 20;
-    constexpr double tolerance = 1e-11;  // [m]
+    constexpr double tolerance = 1e-11;  // largest change in the last iteration [m]
     Equations equations;
     equations << differentiate_projection(a_, at_), differentiate_projection(b_, at_);
     Residuals const weight = weighted_ ? Residuals(sigma_.cwiseInverse()) : Residuals::Ones().eval();

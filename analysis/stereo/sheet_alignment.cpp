@@ -11,7 +11,8 @@
 namespace gladstone::stereo {
 namespace {
 
-/// Least-squares plane, and its standard uncertainties for errors of z with a standard deviation of 1.
+/// Least-squares plane, and the standard uncertainties of its parameters for a standard deviation of 1 m of the points'
+/// z.
 struct SolvedPlane {
   ObjectPlane plane;
   double height_sigma;
@@ -22,7 +23,7 @@ struct SolvedPlane {
 std::optional<SolvedPlane> solve_plane(std::vector<Vec3d> const& points, std::vector<char> const& selected) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double scale = 0.0;  // largest coordinate, which makes the columns comparable
+  double scale = 0.0;  // largest coordinate, by which the columns are divided so that they have similar magnitudes [m]
   for (Vec3d const& p : points) scale = std::max({scale, std::abs(p.x), std::abs(p.y)});
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!selected[i]) continue;
@@ -43,7 +44,7 @@ double height_above(ObjectPlane const& plane, Vec3d const& point) {
   return point.z - plane.point({point.x, point.y}).z;
 }
 
-/// Intersection of the line from a pinhole through a point with a plane.
+/// Computes the intersection of a plane with the line from a pinhole through a point.
 Vec2d project_onto_plane(Vec3d const& pinhole, Vec3d const& point, ObjectPlane const& plane) {
   double const from = height_above(plane, pinhole), to = height_above(plane, point);
   Vec3d const at = pinhole + (from / (from - to)) * (point - pinhole);
@@ -59,7 +60,7 @@ struct Disparities {
   std::vector<Vec2d> node_px;   ///< positions in the dewarped images, midway between both images of the particles
   std::vector<Vec2d> value_px;  ///< position in the image of the second camera minus that in the first
   NodeGrid grid;
-  double redundancy = 1.0;  ///< number of vectors per independent one [1]
+  double redundancy = 1.0;  ///< ratio of the number of vectors to the number of independent vectors [1]
 };
 
 Disparities measure_disparities(std::array<PinholeCamera const*, 2> const& cameras,
@@ -71,7 +72,7 @@ Disparities measure_disparities(std::array<PinholeCamera const*, 2> const& camer
       cameras, {{{first[0].columns(), first[0].rows()}, {first[1].columns(), first[1].rows()}}}, plane, pixel_size);
   if (result.grid.size() == 0)
     throw DataError(ErrorCode::undetermined, "images",
-                    "the two cameras show no common part of the plane; check the calibrations");
+                    "the fields of view of the two cameras do not overlap on the plane; check the calibrations");
   PairSequence const pairs{images.size(), [&](std::size_t pair) {
                              return HostFrames(dewarp_image(images[pair][0], *cameras[0], plane, result.grid),
                                                dewarp_image(images[pair][1], *cameras[1], plane, result.grid));
@@ -87,7 +88,7 @@ Disparities measure_disparities(std::array<PinholeCamera const*, 2> const& camer
   return result;
 }
 
-/// Disparity of a point of another plane, in an image dewarped onto `plane` [px].
+/// Computes the disparity between two images dewarped onto `plane` at a point that is not on this plane [px].
 Vec2d predict_disparity(std::array<PinholeCamera const*, 2> const& cameras, Vec3d const& point,
                         ObjectPlane const& plane, double pixel_size) {
   Vec2d const apart = project_onto_plane(find_pinhole(*cameras[1]), point, plane) -
@@ -95,10 +96,10 @@ Vec2d predict_disparity(std::array<PinholeCamera const*, 2> const& cameras, Vec3
   return Vec2d{apart.x, -apart.y} / pixel_size;
 }
 
-/// Disparity of a point on the axis per height above a plane [px/m].
+/// Computes the disparity of a point on the Z axis divided by its height above a plane [px/m].
 double find_disparity_of_height(std::array<PinholeCamera const*, 2> const& cameras, ObjectPlane const& plane,
                                 double pixel_size) {
-  constexpr double height = 1e-5;  // [m], small compared with the distance of the cameras
+  constexpr double height = 1e-5;  // height of the point [m], small compared with the distance of the cameras
   return length(predict_disparity(cameras, plane.point({}) + Vec3d{0.0, 0.0, height}, plane, pixel_size)) / height;
 }
 
@@ -113,7 +114,8 @@ double find_redundancy(int vectors, double overlap) {
 
 std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points, double redundancy) {
   constexpr int max_rounds = 10;
-  constexpr double limit = 3.0, per_median = 1.4826;  // standard deviation of a normal distribution over its median
+  // per_median: ratio of the standard deviation of a normal distribution to its median magnitude
+  constexpr double limit = 3.0, per_median = 1.4826;
   if (points.size() < 4) return std::nullopt;
   std::vector<char> selected(points.size(), 1);
   FittedPlane fit;
@@ -181,7 +183,8 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
       Vec2d const predicted =
           predict_disparity(cameras, fit->plane.point({points[i].x, points[i].y}), plane, result.pixel_size);
       Vec2d const off = measured.value_px[i] - predicted;
-      if (std::abs(height_above(fit->plane, points[i])) > 5.0 * fit->scatter + 1e-12) continue;  // outlier of the fit
+      // point that the fit has excluded as an outlier
+      if (std::abs(height_above(fit->plane, points[i])) > 5.0 * fit->scatter + 1e-12) continue;
       squares += dot(predicted, predicted);
       scatter += dot(off, off);
       inside += 1.0;

@@ -15,10 +15,11 @@ Eigen::Matrix3d find_rotation(PinholeCamera const& camera) {
   return Eigen::AngleAxisd(angle, axis / angle).toRotationMatrix();
 }
 
-/// Finds (x, y) whose distorted image is the pixel. The camera without pose projects (x, y, 1) to that pixel.
+/// Finds the undistorted image coordinates (x, y) of a pixel: without its pose, the camera projects the point (x, y, 1)
+/// to this pixel.
 std::optional<Vec2d> undistort(PinholeCamera camera, Vec2d pixel) {
   constexpr int max_iterations = 50;
-  constexpr double tolerance = 1e-13, step = 1e-6;  // in units of the distance to the image plane
+  constexpr double tolerance = 1e-13, step = 1e-6;  // both in units of the distance to the image plane
   std::fill(camera.value.begin() + 8, camera.value.end(), 0.0);
   auto const image = [&](Vec2d at) { return camera.project({at.x, at.y, 1.0}); };
   Vec2d at{(pixel.x - camera.cx()) / camera.fx(), (pixel.y - camera.cy()) / camera.fy()};

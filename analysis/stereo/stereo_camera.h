@@ -11,7 +11,7 @@ namespace gladstone::stereo {
 /// Pinhole camera with the covariance of its parameters.
 struct CalibratedCamera {
   PinholeCamera camera;
-  std::vector<double> covariance;  ///< as PinholeFit::covariance [count x count]; empty: exact parameters
+  std::vector<double> covariance;  ///< covariance as in PinholeFit::covariance [count x count]; empty: exact parameters
 };
 
 /// Plane z = height + slope . (x, y) in world coordinates: the middle of a laser sheet.
@@ -24,13 +24,13 @@ struct ObjectPlane {
 
 /// Line of sight of a pixel.
 struct SightLine {
-  Vec3d origin;     ///< the pinhole [m]
+  Vec3d origin;     ///< position of the pinhole [m]
   Vec3d direction;  ///< unit vector into the scene [1]
 };
 
 /// Computes the line of sight of a pixel: the inverse of PinholeCamera::project. The distortion is inverted by Newton's
 /// method.
-/// @return nullopt if the distortion has no inverse there
+/// @return nullopt if the distortion cannot be inverted at this pixel
 std::optional<SightLine> find_sight_line(PinholeCamera const& camera, Vec2d pixel);
 
 /// Computes the intersection of a pixel's line of sight with a plane.
@@ -40,7 +40,7 @@ std::optional<Vec2d> intersect_plane(PinholeCamera const& camera, Vec2d pixel, O
 /// Computes the position of the pinhole in the world [m].
 Vec3d find_pinhole(PinholeCamera const& camera);
 
-/// Computes the size of a pixel on a plane at x = y = 0: the root of its area [m].
+/// Computes the size of a pixel projected onto a plane at x = y = 0: the square root of its area [m].
 double find_pixel_size(PinholeCamera const& camera, ObjectPlane const& plane);
 
 /// Computes the angle between the directions from a point to both pinholes [rad].

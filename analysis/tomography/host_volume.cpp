@@ -79,7 +79,7 @@ class HostVolume : public SartVolume {
 
   SartProblem problem_;
   NodeConstraint constraint_;
-  std::vector<double> value_, before_;  ///< now, and after the last regularize() [kg/m^3]
+  std::vector<double> value_, before_;  ///< current volume, and volume after the last regularize() [kg/m^3]
   std::vector<std::int64_t> views_;
   std::vector<NodeSum> sums_;
   TotalVariation denoiser_;

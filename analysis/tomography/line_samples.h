@@ -11,14 +11,14 @@
 namespace gladstone::tomography {
 
 /// Grid of a volume, passed by value. The volume is the trilinear interpolant from the first to the last node of each
-/// axis, and zero outside. Nodes are stored with x fastest.
+/// axis, and zero outside. The x index of the nodes varies fastest in memory.
 struct VolumeShape {
   int nodes[3] = {2, 2, 2};
   Vec3d origin{};                        ///< position of node (0, 0, 0) [m]
-  Vec3d inverse_spacing{1.0, 1.0, 1.0};  ///< [1/m]
+  Vec3d inverse_spacing{1.0, 1.0, 1.0};  ///< reciprocal of the distance between nodes along each axis [1/m]
   double step = 1.0;                     ///< largest distance between samples of a line [m]
 
-  /// @param steps_per_cell  samples per shortest edge of a cell
+  /// @param steps_per_cell  number of samples per shortest edge of a cell
   static VolumeShape of(RegularGrid const& grid, double steps_per_cell = 2.0) {
     Vec3d const d = grid.spacing;
     double const shortest = std::fmin(d.x, std::fmin(d.y, d.z));
@@ -29,7 +29,8 @@ struct VolumeShape {
   }
 };
 
-/// Cell of a sample and the eight weights of its nodes, the products of (1 - t) or t along each axis.
+/// Cell that contains a sample, and the weights of the cell's eight nodes, which are products of (1 - t) or t along
+/// each axis.
 struct CellWeights {
   int cell[3];  ///< lowest node of the cell
   double t[3];  ///< position in the cell, 0 to 1
@@ -41,14 +42,14 @@ struct CellWeights {
 /// Equidistant samples of the part of a sight line inside a volume (midpoint rule). The rule is exact for constant and
 /// affine densities on parallel lines, and of second order in the spacing of the grid otherwise.
 struct LineSamples {
-  int count = 0;        ///< 0: the line misses the volume
+  int count = 0;        ///< number of samples; 0: the line misses the volume
   double length = 0.0;  ///< distance between samples [m]
   double first = 0.0;   ///< distance of the first sample from the line's origin [m]
   Vec3d node{};         ///< first sample in grid coordinates [nodes]
-  Vec3d advance{};      ///< from sample to sample [nodes]
+  Vec3d advance{};      ///< vector from a sample to the next one [nodes]
 
   GLADSTONE_HD static LineSamples of(VolumeShape const& shape, SightLine const& line) {
-    // Clip the line to the box of the nodes, and to the space between dot and pupil
+    // Clip the line to the bounding box of the nodes, and to the section between dot and pupil.
     double from = line.is_parallel() ? -1e30 : 0.0, to = line.is_parallel() ? 1e30 : 0.999 * line.pupil_distance;
     for (int axis = 0; axis < 3; ++axis) {
       double const width = (shape.nodes[axis] - 1) / shape.inverse_spacing[axis];
@@ -74,7 +75,7 @@ struct LineSamples {
     return samples;
   }
 
-  /// Weight of sample i in the line integral [m].
+  /// Returns the weight of sample i in the line integral [m].
   GLADSTONE_HD double weight(SightLine const& line, int i) const { return length * line.weight(first + i * length); }
 
   GLADSTONE_HD CellWeights cell(VolumeShape const& shape, int i) const {
@@ -91,7 +92,7 @@ struct LineSamples {
   }
 };
 
-/// Sum of the contributions of lines to a node, and of their weights.
+/// Sum of the contributions of lines to a node, and sum of the weights of these contributions.
 struct NodeSum {
   double value = 0.0;
   double weight = 0.0;
@@ -104,7 +105,7 @@ struct NodeSum {
 /// Integrates a volume along a sight line: one row of the projection A.
 struct LineProjection {
   VolumeShape shape;
-  double const* values;  ///< [nodes]
+  double const* values;  ///< value of every node [nodes]
 
   GLADSTONE_HD double operator()(SightLine const& line) const {
     LineSamples const samples = LineSamples::of(shape, line);
@@ -124,7 +125,7 @@ struct LineProjection {
     return sum;
   }
 
-  /// Sum of the weights of a line, i.e. the projection of a volume of ones [m].
+  /// Returns the sum of the weights of a line, i.e. the projection of a volume of ones [m].
   GLADSTONE_HD static double row_sum(VolumeShape const& shape, SightLine const& line) {
     LineSamples const samples = LineSamples::of(shape, line);
     double sum = 0.0;
@@ -149,8 +150,9 @@ GLADSTONE_HD inline void limit_samples(LineSamples const& samples, int axis, dou
   if (last < end) end = last > begin ? static_cast<int>(last) : begin;
 }
 
-/// Visits the samples of a sight line that touch the nodes [low, high) along one axis, in the order of the line.
-/// @param add  add(node index, weight), for those nodes of each sample's cell that are within [low, high)
+/// Visits the samples of a sight line whose cells contain nodes within [low, high) along one axis, in their order along
+/// the line.
+/// @param add  called as add(node index, weight) for each node of a sample's cell that is within [low, high)
 template <class Add>
 GLADSTONE_HD void visit_slab(VolumeShape const& shape, SightLine const& line, int axis, int low, int high, Add&& add) {
   LineSamples const samples = LineSamples::of(shape, line);
@@ -172,8 +174,8 @@ GLADSTONE_HD void visit_slab(VolumeShape const& shape, SightLine const& line, in
   }
 }
 
-/// Visits the samples of a sight line that touch one node, in the order of the line: the contributions of visit_slab()
-/// to this node. @param add  add(weight)
+/// Visits the samples of a sight line whose cells contain one given node, in their order along the line. The
+/// contributions equal those of visit_slab() to this node. @param add called as add(weight) for each sample
 template <class Add>
 GLADSTONE_HD void visit_node(VolumeShape const& shape, SightLine const& line, LineSamples const& samples,
                              int const (&node)[3], Add&& add) {
@@ -182,7 +184,8 @@ GLADSTONE_HD void visit_node(VolumeShape const& shape, SightLine const& line, Li
   for (int i = begin; i < end; ++i) {
     CellWeights const at = samples.cell(shape, i);
     int const n[3] = {node[0] - at.cell[0], node[1] - at.cell[1], node[2] - at.cell[2]};
-    if ((n[0] | n[1] | n[2]) & ~1) continue;  // a corner is 0 or 1
+    // skip unless the node is a corner of the cell: the offset is 0 or 1 along each axis
+    if ((n[0] | n[1] | n[2]) & ~1) continue;
     add(samples.weight(line, i) * at.weight(n[0], n[1], n[2]));
   }
 }

@@ -14,7 +14,7 @@ namespace {
 /// the mid-plane are 1.
 density::ProjectionOptics pixel_optics() { return {1.0, 1.0, 1.0, 2.0, 2.0, 1.0, {}}; }
 
-/// Derivatives of the projection per pixel by the displacement [kg/m^2/px^2].
+/// Factors that convert the displacement to the gradient of the projected density per pixel [kg/m^2/px^2].
 struct GradientFactors {
   double column_by_u, column_by_v, row_by_u, row_by_v;
 };

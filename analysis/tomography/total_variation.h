@@ -8,14 +8,14 @@
 namespace gladstone::tomography {
 
 /// Total-variation denoising of a volume: minimises |x - g|^2 / 2 + lambda TV(x) by the dual projection of Chambolle,
-/// J. Math. Imaging Vis. 20 (2004) 89. TV(x) is the sum over the nodes of the length of the gradient, by forward
-/// differences, times the shortest spacing of the grid. The dual variable is kept from call to call, so that repeated
+/// J. Math. Imaging Vis. 20 (2004) 89. TV(x) is the sum of the gradient's length over all nodes, computed by forward
+/// differences, times the shortest spacing of the grid. The dual variable is retained between calls, so that repeated
 /// denoising of similar volumes converges.
 class TotalVariation {
  public:
   explicit TotalVariation(RegularGrid const& grid);
 
-  /// @param volume      g, replaced by the denoised volume [grid.size()]
+  /// @param volume  input: volume g; output: denoised volume [grid.size()]
   /// @param lambda      strength, in the unit of the volume; an isolated extremum is reduced by up to 6 lambda
   /// @param iterations  number of dual iterations
   void denoise(std::vector<double>& volume, double lambda, int iterations);

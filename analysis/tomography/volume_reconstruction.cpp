@@ -16,7 +16,7 @@
 namespace gladstone::tomography {
 namespace {
 
-// Volume before and after a sweep, denoised volume, number of views, sums, dual variable
+// Memory per node: volume before and after a sweep, denoised volume, number of views, sums and dual variable.
 constexpr double bytes_per_node = 8.0 + 8.0 + 8.0 + 8.0 + 16.0 + 24.0;
 
 void check_settings(RegularGrid const& grid, SartSettings const& settings) {
@@ -56,8 +56,8 @@ void check_views(std::vector<ProjectedView> const& views) {
   }
 }
 
-/// Returns the order of the views: indices sorted by the fractional part of their multiples of the golden ratio, so
-/// that consecutive views differ much.
+/// Returns the order in which the views are used: their indices, sorted by the fractional part of index times golden
+/// ratio, so that the directions of consecutive views differ strongly.
 std::vector<std::size_t> order_views(std::size_t count) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -66,8 +66,8 @@ std::vector<std::size_t> order_views(std::size_t count) {
   return order;
 }
 
-/// Prepares a view for the iteration: lines that cross less than one cell are ignored, since the division by their sum
-/// of weights amplifies noise.
+/// Prepares a view for the iteration. Lines that cross less than one cell are ignored, since the division by their
+/// small sum of weights would amplify noise.
 SartView prepare_view(ProjectedView const& view, RegularGrid const& grid, double& outside, double& total) {
   SartView prepared{LineProjector(grid, view.lines), view.value};
   double const least = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
@@ -90,7 +90,7 @@ void require_common_part(VolumeReconstruction const& result) {
                               most));
 }
 
-/// Counts the nodes that a view sees and that may differ from zero.
+/// Counts the nodes that at least one view sees and whose value may differ from zero.
 std::size_t count_changed_nodes(VolumeReconstruction const& result, SartSettings const& settings) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < result.views.size(); ++i)
@@ -98,7 +98,8 @@ std::size_t count_changed_nodes(VolumeReconstruction const& result, SartSettings
   return count;
 }
 
-/// Returns the rms residual of each view over the rms of all line integrals, in the order in which the views are given.
+/// Returns the ratio of each view's rms residual to the rms of all line integrals, in the order in which the views are
+/// given.
 std::vector<double> compute_view_residual(SweepSums const& sums, std::vector<SartView> const& prepared,
                                           std::vector<std::size_t> const& order) {
   std::vector<double> result(order.size());

@@ -14,8 +14,8 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr double rounding_noise = 0.28867513459481288;  // 1 / sqrt(12)
-constexpr double filter_share = 0.7;                    // width of the filter over that of the dots
+constexpr double rounding_noise = 0.28867513459481288;  // noise of rounding to integers, 1 / sqrt(12) [grey levels]
+constexpr double filter_share = 0.7;                    // ratio of the filter's width to that of the dots
 constexpr double usual_sigma = 0.75;  // standard deviation of a dot image if the frame does not determine it [px]
 
 std::vector<double> finite_levels(Image<double> const& levels) {
@@ -42,7 +42,7 @@ Image<double> filtered(Image<double> const& levels, double sigma) {
 /// Returns the factor by which the filter reduces the standard deviation of uncorrelated noise.
 double noise_reduction(double sigma) {
   cv::Mat const kernel = cv::getGaussianKernel(filter_side(sigma), sigma, CV_64F);
-  return kernel.dot(kernel);  // root of the sum of squares of the two-dimensional kernel
+  return kernel.dot(kernel);  // equals the root of the sum of squares of the two-dimensional kernel
 }
 
 /// Returns the offset of the vertex of the parabola through three levels, at most half a pixel.
@@ -110,9 +110,9 @@ double estimate_dot_sigma(Image<double> const& above) {
   };
   double const one = correlation(1), two = correlation(2);
   if (!(one > 0)) return usual_sigma;
-  // For dots of about one pixel, the second value is near or below zero.
+  // For dots of about one pixel, the autocorrelation at a shift of two pixels is near or below zero.
   double const ratio = std::log(one / std::max(two, 1e-3 * one));
-  if (!(ratio > 0)) return usual_sigma;  // noise alone
+  if (!(ratio > 0)) return usual_sigma;  // the frame contains noise only
   return std::clamp(std::sqrt(0.75 / ratio), 0.3, 10.0);
 }
 
@@ -120,7 +120,7 @@ std::vector<GaussianDot> find_dot_candidates(DotFrame const& frame, double sigma
   double const width = filter_share * sigma_px;
   Image<double> const smooth = filtered(frame.above, width);
   double const threshold = detection_threshold * frame.noise * noise_reduction(width);
-  // Flux of a Gaussian dot over its height after the filter; the integration over pixels adds 1/12 px^2.
+  // Ratio of a Gaussian dot's flux to its height after the filter; the integration over pixels adds 1/12 px^2.
   double const variance = sigma_px * sigma_px + width * width + 1.0 / 12;
   double const flux_per_height = 2 * pi * variance;
   std::vector<GaussianDot> found;

@@ -11,14 +11,16 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr double smallest_variance = 0.02;  // [px^2]
+constexpr double smallest_variance = 0.02;  // lower bound of a dot's second moments [px^2]
 constexpr int most_iterations = 40;
-constexpr double gradient_tolerance = 1e-9;   // largest component of the scaled gradient at the minimum [1]
-constexpr double cost_tolerance = 1e-7;       // change of the sum of squares at the minimum [1]
-constexpr double parameter_tolerance = 1e-7;  // change of the parameters at the minimum, over their norm [1]
+// largest component of the scaled gradient at which the fit has converged [1]
+constexpr double gradient_tolerance = 1e-9;
+// relative change of the sum of squares at which the fit has converged [1]
+constexpr double cost_tolerance = 1e-7;
+constexpr double parameter_tolerance = 1e-7;  // relative change of the parameters at which the fit has converged [1]
 
-/// Residual whose square is -2 ln of Student's t density with four degrees of freedom, up to a factor of 4/5 and a
-/// constant: z near zero, growing as the root of a logarithm.
+/// Returns the residual whose square is -2 ln of Student's t density with four degrees of freedom, apart from a factor
+/// of 4/5 and a constant. It equals z near zero and increases only as the root of a logarithm for large z.
 double student_residual(double z) { return std::copysign(2 * std::sqrt(std::log1p(0.25 * z * z)), z); }
 
 double student_slope(double z) {
@@ -71,7 +73,7 @@ class JointDotCost {
   }
 
   /// Sets the parameters at which residuals and derivatives are evaluated.
-  /// @return false if a parameter is out of range; they must not be evaluated then
+  /// @return false if a parameter is out of range; residuals and derivatives must not be evaluated in that case
   bool set(Eigen::VectorXd const& x) {
     background_ = x[x.size() - 1] * scale_;
     dots_.clear();
@@ -88,7 +90,8 @@ class JointDotCost {
     return true;
   }
 
-  /// Computes the residuals at the parameters of set(): those of the pixels, then those of the priors of each dot.
+  /// Computes the residuals at the parameters of set(): first the residuals of the pixels, then those of each dot's
+  /// priors.
   void residuals(Eigen::VectorXd& values) const {
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
       FitPixel const& pixel = pixels_[i];
@@ -139,7 +142,7 @@ class JointDotCost {
   DotPrior const& prior_;
   Vec2d origin_{};
   double scale_ = std::numeric_limits<double>::min();
-  // At the parameters of set():
+  // Values for the parameters of the last set():
   double background_ = 0;
   std::vector<GaussianDot> dots_;
   std::vector<DotLight> lights_;
@@ -147,8 +150,8 @@ class JointDotCost {
 
 /// Least-squares fit of the parameters of a JointDotCost by the method of Levenberg and Marquardt, with Jacobi scaling
 /// and the damping of Madsen, Nielsen & Tingleff, "Methods for non-linear least squares problems" (2004), like
-/// ceres::TinySolver. Different from it, the light of accepted parameters is computed once, not again for the
-/// derivatives, and a fit is given up that will not get below a given cost.
+/// ceres::TinySolver. Unlike TinySolver, it computes the light of accepted parameters once for residuals and
+/// derivatives, and stops early if the cost is not expected to fall below a given limit.
 class JointFit {
  public:
   /// @param cost  must outlive this object
@@ -159,7 +162,8 @@ class JointFit {
         normal_(Eigen::MatrixXd::Zero(cost.parameter_count(), cost.parameter_count())),
         gradient_(cost.parameter_count()) {}
 
-  /// Minimises the sum of squares. @return false if it is above most_cost, or if the start is out of range
+  /// Minimises the sum of squares. @return false if the minimum exceeds most_cost, or if the start values are out of
+  /// range
   bool run(Eigen::VectorXd& x, double most_cost) {
     if (!cost_.set(x)) return false;
     cost_.residuals(residuals_);
@@ -207,11 +211,11 @@ class JointFit {
   }
 
  private:
-  /// Excess of the cost over the last decrease from which a fit is given up: a sequence of decreases that shrink by
-  /// 5 % each sums up to 20 times the last one.
+  /// Multiple of the last decrease of the cost. The fit is stopped if its cost exceeds the limit by more than this: if
+  /// each decrease is 5 % smaller than the previous one, all further decreases sum to 20 times the last one.
   static constexpr double hopeless = 20;
 
-  /// Computes the normal equations at the parameters of the last JointDotCost::set(); the lower triangle.
+  /// Computes the lower triangle of the normal equations at the parameters of the last JointDotCost::set().
   void linearise() {
     cost_.jacobian(jacobian_);
     for (Eigen::Index j = 0; j < normal_.cols(); ++j) {

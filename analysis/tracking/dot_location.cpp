@@ -21,18 +21,19 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::array<int, 4> additions_per_sweep{0, 4, 4, 0};  // largest number of dots added to a group
+constexpr std::array<int, 4> additions_per_sweep{0, 4, 4, 0};  // largest number of dots added to a group in each sweep
 constexpr double least_spread = 0.02;     // smallest standard deviation of the prior, relative to its mean
 constexpr double least_mismatch = 0.005;  // deviation of real dot images from the Gaussian, relative to their levels
-// Smallest flux of a fitted dot over the detection threshold. It is below 1 because the uncertainty of the flux
-// contains those of width and background, which do not affect the detection.
+// Minimum ratio of a fitted dot's flux, in standard uncertainties, to the detection threshold. The ratio is below 1
+// because the uncertainty of a fitted flux also contains the effects of width and background, which do not affect the
+// detection.
 constexpr double least_flux_share = 0.6;
-constexpr std::size_t enough_isolated = 10;  // number of isolated dots that determine the prior
+constexpr std::size_t enough_isolated = 10;  // number of isolated dots that suffices to determine the prior
 
 /// State of the dot location in one frame.
 class FrameFit {
  public:
-  /// @param places  approximate centres of all dots [px]; none: found in the frame
+  /// @param places  approximate centres of all dots [px]; nullopt: the dots are searched in the frame
   FrameFit(Image<double> const& frame, DotSettings const& settings,
            std::optional<std::span<Vec2d const>> places = std::nullopt)
       : settings_(settings), frame_(prepare_dot_frame(frame, settings)), places_known_(places.has_value()) {
@@ -82,7 +83,8 @@ class FrameFit {
   }
 
  private:
-  /// Returns dots at the places within the frame, with fluxes estimated from the nearest pixels.
+  /// Returns dots at those of the given places that are within the frame, with fluxes estimated from the nearest
+  /// pixels.
   std::vector<GaussianDot> dots_at(std::span<Vec2d const> places, double variance) const {
     std::vector<GaussianDot> dots;
     for (Vec2d const place : places) {
@@ -153,7 +155,7 @@ class FrameFit {
     return pixels;
   }
 
-  /// Fits all dots, in groups to each of which up to `additions` dots are added.
+  /// Fits all dots in groups. Up to `additions` dots are added to each group.
   void fit_groups(int additions) {
     std::vector<Vec2d> centres;
     for (LocatedDot const& dot : located_) centres.push_back(dot.image.centre);
@@ -170,7 +172,7 @@ class FrameFit {
       if (pixels.size() < start.size() * (3 + shape_parameters(settings_.shape)) + 1) return;
       DotFit const fit = fit_overlapping_dots(pixels, start, model_, places_known_ ? 0 : additions);
       if (!std::isfinite(fit.cost)) {
-        // Keep the dots: a later sweep has better starts and a narrower prior.
+        // Retain the dots of a failed fit: a later sweep has better start values and a narrower prior.
         for (GaussianDot const& dot : start)
           fitted[g].push_back({.image = dot,
                                .sigma_px = {not_a_number, not_a_number},
@@ -212,8 +214,9 @@ class FrameFit {
     return c.x > -0.5 && c.y > -0.5 && c.x < frame_.above.columns() - 0.5 && c.y < frame_.above.rows() - 0.5;
   }
 
-  /// Returns whether a fit is significant and its size agrees with that of the other dots: within a factor of four, or,
-  /// since the width of a dot of few pixels is uncertain, within four times the spread over the frame.
+  /// Returns whether the flux of a fitted dot is significant and its size agrees with that of the other dots: within a
+  /// factor of four, or within four times the spread of the sizes in the frame, since the width of a dot of few pixels
+  /// is uncertain.
   bool valid(LocatedDot const& dot) const {
     double const typical = model_.prior.mean[0], size = dot.image.xx;
     bool const usual =
@@ -242,7 +245,7 @@ class FrameFit {
     located_.resize(next);
   }
 
-  /// Determines the distribution of shape and flux from the dots that were fitted alone.
+  /// Determines the distribution of shape and flux from the dots that were fitted individually.
   void update_prior() {
     std::array<std::vector<double>, 3> values;
     std::vector<double> fluxes;
@@ -267,7 +270,7 @@ class FrameFit {
         std::max(sigma_per_median_deviation * upper_median(fluxes), least_spread * model_.prior.flux_mean);
   }
 
-  /// Determines the profile of round dots from those that were fitted alone.
+  /// Determines the profile of round dots from the dots that were fitted individually.
   void update_profile() {
     if (settings_.shape != DotShape::round || profile_samples_.size() < enough_isolated) return;
     FittedProfile const fitted = fit_dot_profile(profile_samples_);
@@ -280,7 +283,7 @@ class FrameFit {
   /// Updates background and noise from the residual of the frame.
   void update_background() {
     Image<double> residual = residual_of(sum_light());
-    // Fitted parameters absorb a part of the noise.
+    // The fitted parameters absorb a part of the noise, for which the estimate is corrected.
     double const pixels = static_cast<double>(residual.size()), parameters = 4.0 * static_cast<double>(located_.size());
     frame_.noise =
         estimate_noise(residual, whole_levels_) * std::sqrt(pixels / std::max(pixels - parameters, 0.5 * pixels));
@@ -290,7 +293,8 @@ class FrameFit {
     for (std::size_t i = 0; i < residual.size(); ++i) frame_.above.data()[i] -= correction.data()[i];
   }
 
-  /// Returns the residuals of the pixels that do not determine the fit by themselves.
+  /// Returns the residuals of the pixels with a leverage below 0.9; at pixels of higher leverage, the fit follows the
+  /// measured level too closely.
   static std::vector<ResidualSample> sample_residuals(DotFit const& fit, std::vector<FitPixel> const& pixels) {
     constexpr double most_leverage = 0.9;
     std::vector<ResidualSample> samples;
@@ -302,7 +306,7 @@ class FrameFit {
     return samples;
   }
 
-  /// Returns the pixels of a dot that was fitted alone.
+  /// Returns the pixels of a dot that was fitted individually.
   std::vector<ProfileSample> sample_profile(DotFit const& fit, std::vector<FitPixel> const& pixels) const {
     GaussianDot const& dot = fit.dots.front();
     PixelBox const box = bounding_box(pixels);
@@ -325,7 +329,8 @@ class FrameFit {
     return samples;
   }
 
-  /// Returns the squared residual of a single dot beyond the noise, over the squared level.
+  /// Returns the ratio of the squared residual of an individually fitted dot, after subtraction of the noise, to the
+  /// squared level.
   static double estimate_mismatch(DotFit const& fit, std::vector<FitPixel> const& pixels) {
     double excess = 0, power = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -337,12 +342,12 @@ class FrameFit {
 
   DotSettings settings_;
   DotFrame frame_;
-  bool places_known_;  // no dots are added to those at the given places
+  bool places_known_;  // true: the places of all dots are given, and no dots are added
   bool whole_levels_ = false;
   DotModel model_;
-  double gain_ = 0;  // variance of the noise per grey level of light
+  double gain_ = 0;  // variance of the shot noise per grey level of light
   std::vector<ResidualSample> samples_;
-  std::vector<std::vector<ProfileSample>> profile_samples_;  // of the dots that were fitted alone
+  std::vector<std::vector<ProfileSample>> profile_samples_;  // samples of the dots that were fitted individually
   std::vector<LocatedDot> located_;
 };
 

@@ -13,11 +13,13 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::size_t supporters = 12;       // neighbours that support a displacement
-constexpr std::size_t least_supporters = 3;  // fewer neighbours do not identify a displacement
-constexpr int most_rounds = 5;               // largest number of rounds that predict from certain matches
-constexpr double track_weight = 0.4;   // weight of the evidence of a track: in coherent flows, the neighbours decide
-constexpr double certain_track = 0.5;  // evidence of a track from which the neighbours do not refute a match
+constexpr std::size_t supporters = 12;  // number of neighbours that may support a displacement
+// minimum number of neighbours for which the support of a displacement is conclusive
+constexpr std::size_t least_supporters = 3;
+constexpr int most_rounds = 5;  // largest number of rounds that predict from certain matches
+// weight of the evidence of a track; it is small, so that the neighbours decide in coherent flows
+constexpr double track_weight = 0.4;
+constexpr double certain_track = 0.5;  // track evidence from which a match is not tested against its neighbours
 constexpr double alias_range = 1.5;    // range of alternatives beyond the search radius [spacings]
 
 /// Parameters of a round of the matching.
@@ -58,7 +60,7 @@ class DotMatcher {
     Round round{given, std::min(radius_, bound), std::min(radius_ + alias_range * spacing, bound), tolerance_};
     std::vector<DotMatch> matches = match(round);
 
-    // Predict again from the certain matches: their number grows around the regions of good prediction.
+    // Predict again from the certain matches, whose number increases around the regions of good prediction.
     for (int repeat = 0; repeat < most_rounds; ++repeat) {
       std::size_t const before = count_certain(matches);
       if (before <= least_supporters) return matches;
@@ -67,7 +69,7 @@ class DotMatcher {
       round.prediction = refine_prediction(given, matches, outliers);
       round.tolerance = 0.5 * tolerance_;
       matches = match(round);
-      for (std::size_t i = 0; i < a_.size(); ++i)  // the search radius refers to the given prediction
+      for (std::size_t i = 0; i < a_.size(); ++i)  // the search radius refers to the prediction given by the caller
         if (matches[i].status == MatchStatus::matched &&
             !(length(match_deviation(i, matches[i], given[i])) <= round.radius))
           matches[i].status = MatchStatus::unmatched;
@@ -86,12 +88,12 @@ class DotMatcher {
         matches.begin(), matches.end(), [](DotMatch const& match) { return match.status == MatchStatus::matched; }));
   }
 
-  /// Returns the displacement of dot i by its match minus a prediction.
+  /// Returns the displacement of dot i to its partner minus a prediction.
   Vec2d match_deviation(std::size_t i, DotMatch const& match, Vec2d prediction) const {
     return b_[match.partner] - a_[i] - prediction;
   }
 
-  /// Returns the deviations of all dots from a prediction; NaN without a certain match.
+  /// Returns the deviations of all dots' displacements from a prediction; NaN for dots without a certain match.
   std::vector<Vec2d> deviations(std::vector<DotMatch> const& matches, std::vector<Vec2d> const& prediction) const {
     std::vector<Vec2d> values(a_.size(), Vec2d{not_a_number, not_a_number});
     for (std::size_t i = 0; i < a_.size(); ++i)
@@ -99,7 +101,8 @@ class DotMatcher {
     return values;
   }
 
-  /// Interpolates the certain matches that are not outliers; retains the given prediction far from them.
+  /// Computes a new prediction by interpolation of the certain matches that are not outliers; far from these matches,
+  /// retains the given prediction.
   /// @param outliers  as returned by find_outliers(); empty: none
   std::vector<Vec2d> refine_prediction(std::vector<Vec2d> prediction, std::vector<DotMatch> const& matches,
                                        std::vector<char> const& outliers) const {
@@ -152,7 +155,7 @@ class DotMatcher {
     Vec2d const place = a_[i] + round.prediction[i];
     std::vector<std::size_t> const candidates = cells_b_.within(place, round.range);
     if (around_[i].size() < least_supporters) {
-      // Without neighbours only a single candidate is certain.
+      // Without neighbours, a match is certain only if there is a single candidate.
       if (candidates.empty() || !(length(b_[candidates.front()] - place) <= round.radius)) return match;
       match.partner = candidates.front();
       match.status = candidates.size() == 1 ? MatchStatus::matched : MatchStatus::ambiguous;
@@ -185,7 +188,7 @@ class DotMatcher {
     parallel_chunks(a_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) matches[i] = best_match(i, round);
     });
-    // A partner belongs to the dot whose prediction it fits best.
+    // If several dots have the same partner, assign it to the dot whose prediction it fits best.
     std::vector<std::size_t> owner(b_.size(), a_.size());
     auto const misfit = [&](std::size_t i) { return length(match_deviation(i, matches[i], round.prediction[i])); };
     for (std::size_t i = 0; i < a_.size(); ++i) {
@@ -205,7 +208,7 @@ class DotMatcher {
   std::span<Vec2d const> a_, b_;
   MatchSettings settings_;
   NearestPoints cells_a_, cells_b_;
-  double radius_, tolerance_;  // of the search [px]
+  double radius_, tolerance_;  // radius and tolerance of the search [px]
   TrackEvidence tracks_;
   std::vector<std::vector<std::size_t>> around_;  // nearest dots of each dot of frame A
 };

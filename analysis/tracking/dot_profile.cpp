@@ -11,19 +11,22 @@ namespace {
 
 constexpr int size = static_cast<int>(DotProfile::count);
 constexpr double least_f_ratio = 6;
-constexpr double usual_misfit = 3;      // largest residual of a dot, over the median of all
-constexpr int rounds = 4;               // of the choice of the dots
-constexpr double least_misfit = 0.005;  // of a Gaussian that is replaced, rms relative to the light
-constexpr double ridge = 1e-9;          // weight of shares of zero, over the mean diagonal of the normal matrix
+constexpr double usual_misfit = 3;  // largest ratio of a dot's residual to the median of all dots' residuals
+constexpr int rounds = 4;           // number of times that dots with usual residuals are selected
+// minimum rms misfit of the Gaussian for which it is replaced by another profile, relative to the light
+constexpr double least_misfit = 0.005;
+constexpr double ridge = 1e-9;  // regularisation of the shares towards zero, relative to the mean diagonal of
+                                // the normal matrix
 
 using Matrix = Eigen::Matrix<double, size, size>;
 using Vector = Eigen::Matrix<double, size, 1>;
 
-/// Normal equations of the light of all Gaussians, without background and shift, which are eliminated dot by dot.
+/// Normal equations of the fluxes of all Gaussians of the profile. The background and the shift of each dot have been
+/// eliminated from them.
 struct ProfileEquations {
   Matrix matrix = Matrix::Zero();
   Vector right = Vector::Zero();
-  double squares = 0;  ///< weighted squares of the levels
+  double squares = 0;  ///< weighted sum of the squared levels
   double freedom = 0;
 
   void add(ProfileEquations const& other) {
@@ -41,7 +44,7 @@ struct ProfileEquations {
 
   double residual(Vector const& light) const { return squares - 2 * right.dot(light) + light.dot(matrix * light); }
 
-  /// Returns the residual of the best Gaussian.
+  /// Returns the weighted sum of squared residuals of the best fit of a single Gaussian.
   double gaussian_residual() const { return squares - right[size - 1] * right[size - 1] / matrix(size - 1, size - 1); }
 };
 
@@ -64,7 +67,8 @@ ProfileEquations dot_equations(std::vector<ProfileSample> const& samples) {
           static_cast<double>(rows - 3)};
 }
 
-/// Sums the equations of the dots whose residual, over their squared levels, is at most three times the median.
+/// Sums the equations of those dots whose ratio of squared residual to squared levels is at most three times the median
+/// ratio.
 ProfileEquations sum_usual(std::vector<ProfileEquations> const& dots, Vector const& light) {
   std::vector<double> misfit;
   for (ProfileEquations const& dot : dots) misfit.push_back(dot.residual(light) / dot.squares);

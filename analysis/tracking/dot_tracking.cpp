@@ -52,27 +52,30 @@ DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, st
   }
   if (a.dots.empty() || b.dots.empty())
     field.warnings.push_back(
-        fmt::format("no dots in frame {} (nothing exceeds the noise by {:g} standard deviations as a dot); check the "
-                    "frames, and correlate.tracking.polarity and diameter_px",
-                    a.dots.empty() ? "A" : "B", DotSettings{}.detection_threshold));
+        {WarningCode::unreliable, "",
+         fmt::format("no dots in frame {} (nothing exceeds the noise by {:g} standard deviations as a dot); check the "
+                     "frames, and correlate.tracking.polarity and diameter_px",
+                     a.dots.empty() ? "A" : "B", DotSettings{}.detection_threshold)});
   if (2 * ambiguous > matches.size())
     field.warnings.push_back(
-        fmt::format("{} of {} dots have ambiguous displacements (the pattern matches itself after a shift within the "
-                    "search range); use a random pattern, or set correlate.tracking.displacement_bound_px below half "
-                    "the pitch if no displacement is larger",
-                    ambiguous, matches.size()));
+        {WarningCode::unreliable, "",
+         fmt::format("{} of {} dots have ambiguous displacements (the pattern matches itself after a shift within the "
+                     "search range); use a random pattern, or set correlate.tracking.displacement_bound_px below half "
+                     "the pitch if no displacement is larger",
+                     ambiguous, matches.size())});
   return field;
 }
 
 namespace {
 
-/// Returns the displacements of a prediction at the given places; empty without vectors.
+/// Interpolates the predicted displacements at the given places; empty if the predictor has no vectors.
 std::vector<Vec2d> predict(DisplacementField const& predictor, std::span<Vec2d const> places) {
   return predictor.size() > 0 ? interpolate_vectors(predictor, places).displacement_px : std::vector<Vec2d>{};
 }
 
-/// Returns where the dots of frame A are expected in frame B: at their partners, or else at their predicted places.
-/// Dots of frame B far from all of these are added; they may have entered the frame.
+/// Returns the expected places of the dots of frame A in frame B: the places of their partners, or the predicted places
+/// of dots without a partner. Adds the dots of frame B that are far from all of these places and may have entered the
+/// frame.
 std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches) {
   std::vector<Vec2d> const centres_a = dot_centres(a);
   std::vector<Vec2d> const displacements = predict(matched_vectors(a, b, matches), centres_a);
@@ -92,7 +95,7 @@ std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, s
   return places;
 }
 
-/// @param before, after  frames before a and after b; null: none
+/// Tracks the dots between frames a and b. @param before, after frames before a and after b; null: none
 DisplacementField track(Image<double> const* before, Image<double> const& a, Image<double> const& b,
                         Image<double> const* after, DisplacementField const& predictor,
                         TrackingSettings const& settings, LocatedFrames const& located) {

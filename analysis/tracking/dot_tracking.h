@@ -19,18 +19,19 @@ struct TrackingSettings {
 
 /// Measures the displacement of every dot (BOS) or particle (PIV) between two frames.
 ///
-/// With known places, the dots of frame A are fitted there. Those of frame B are first located without known places,
-/// and then fitted again: at the places of the matched dots, and at the predicted places of the others. Overlapping
-/// images are thus fitted with the same dots in both frames (prior knowledge of the pattern: Rajendran, Bane & Vlachos,
-/// Exp. Fluids 60 (2019) 162).
-/// @param predictor  displacement field that predicts the displacements, for example of a correlation; vectors that do
-///                   not count are ignored; without vectors: zero
+/// If places are known, the dots of frame A are fitted at these places. Those of frame B are first located without
+/// known places, and then fitted again: at the places of the matched dots, and at the predicted places of the others.
+/// Overlapping images are thus resolved into the same dots in both frames (prior knowledge of the pattern: Rajendran,
+/// Bane & Vlachos, Exp. Fluids 60 (2019) 162).
+/// @param predictor  field that predicts the displacements, for example the result of a correlation; masked and invalid
+///                  vectors are ignored; without vectors, the prediction is zero
 /// @return one vector per dot of frame A (see matched_vectors()), with warnings on dots without a valid vector
 /// @throws DataError if the sizes of the frames differ; Interrupted
 DisplacementField track_dots(Image<double> const& a, Image<double> const& b, DisplacementField const& predictor,
                              TrackingSettings const& settings = {});
 
-/// Likewise in a sequence, with tracks through the frames before and after the pair where they exist (match_dots()).
+/// Tracks dots like track_dots() above in a sequence. Uses tracks through the frames before and after the pair if these
+/// frames exist (match_dots()).
 /// @param located  locates the dots of the frames, with settings.dots
 DisplacementField track_dots(TrackFrames const& frames, DisplacementField const& predictor,
                              TrackingSettings const& settings, LocatedFrames const& located);
@@ -38,13 +39,13 @@ DisplacementField track_dots(TrackFrames const& frames, DisplacementField const&
 /// Converts matches to a displacement field.
 ///
 /// Vectors are at the mid-positions of the dots, as those of a correlation; dots without a valid match are at their
-/// place in frame A with NaN. sigma_px is that of displacement_sigmas(). Status and reason:
+/// place in frame A, with a displacement of NaN. sigma_px is computed by displacement_sigmas(). Status and reason:
 /// - matched: valid, measured;
 /// - unmatched: invalid, beyond_limit;
 /// - ambiguous: invalid, not_replaced, Ambiguity::here; raw_px is the displacement of the best candidate;
-/// - outlier: invalid, not_replaced, FailedTest::median; raw_px as above.
-/// `correlation` is the support of the match and `peak_ratio` the ratio of the supports of the best and the next
-/// displacement.
+/// - outlier: invalid, not_replaced, FailedTest::median; raw_px is the displacement of the match.
+/// `correlation` is the support of the match and `peak_ratio` the ratio of the best displacement's support to that of
+/// the next best one.
 /// @pre there is one match per dot of a
 DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches);
 

@@ -18,7 +18,7 @@ namespace gladstone::tracking {
 /// Image of a dot: a Gaussian, or a round DotProfile. The second moments are those of the irradiance of the widest
 /// Gaussian, before the integration over pixels.
 struct GaussianDot {
-  Vec2d centre{};                 ///< [px]
+  Vec2d centre{};                 ///< position of the centre [px]
   double flux = 0;                ///< sum of the levels above the background [grey levels]
   double xx = 1, xy = 0, yy = 1;  ///< second moments about the centre [px^2]; round dots: xx = yy, xy = 0
 };
@@ -30,23 +30,24 @@ constexpr int shape_parameters(DotShape shape) { return shape == DotShape::round
 struct DotLevel {
   double value = 0;
   double by_x = 0, by_y = 0, by_flux = 0;
-  std::array<double, 3> by_shape{};  ///< with respect to xx (round: of both axes), xy, yy [1/px^2]
+  /// Derivatives with respect to xx, xy and yy; for round dots, the first one is with respect to xx = yy [1/px^2].
+  std::array<double, 3> by_shape{};
 };
 
-/// Rectangle of pixels, whose last column and row belong to it.
+/// Rectangle of pixels, including its last column and row.
 struct PixelBox {
   int left = std::numeric_limits<int>::min(), right = std::numeric_limits<int>::max();
   int top = std::numeric_limits<int>::min(), bottom = std::numeric_limits<int>::max();
 };
 
 /// Light of a dot, integrated over each pixel around it. The levels of a round dot are products of one factor
-/// per column and one per row, computed by the error function (as in GaussianSpot of the renderers). Those of an
-/// elliptic dot are means over 3x3 Gauss-Legendre points; their error is below 1e-4 of the height for widths of 0.6 px
-/// and more.
+/// per column and one per row, computed by the error function (as in GaussianSpot of the renderers). The levels of an
+/// elliptic dot are means over 3x3 Gauss-Legendre points; their error is below 1e-4 of the dot's height for widths of
+/// 0.6 px and more.
 class DotLight {
  public:
-  /// @param profile  of round dots; elliptic ones are Gaussian
-  /// @param box      pixels that are evaluated; those outside of it have no light
+  /// @param profile  profile of round dots; elliptic dots are Gaussian
+  /// @param box  pixels at which the light is computed; it is zero at pixels outside
   /// @pre the second moments are positive definite
   DotLight(GaussianDot const& dot, DotShape shape, DotProfile const& profile, PixelBox const& box = {})
       : dot_(dot), shape_(shape) {
@@ -92,25 +93,25 @@ class DotLight {
   }
 
  private:
-  /// Fraction of the light in one column or row, and its derivatives.
+  /// Fraction of the light in one column or row, and the derivatives of this fraction.
   struct Factor {
     double value, by_centre, by_variance;
   };
 
-  /// Gaussian of the profile.
+  /// One Gaussian of the profile.
   struct Part {
     double share, scale;
-    std::size_t first;  ///< of its factors
+    std::size_t first;  ///< index of the first factor of this Gaussian
   };
 
-  /// Edge between two columns or rows.
+  /// Values at the edge between two columns or rows.
   struct Edge {
-    double place;   ///< minus the centre, over sigma [1]
+    double place;   ///< distance of the edge from the dot's centre, divided by sigma [1]
     double erf;     ///< error function of place / sqrt(2)
-    double normal;  ///< normal density [1/px]
+    double normal;  ///< density of the normal distribution at the edge [1/px]
   };
 
-  /// @param t  place minus centre [px]
+  /// @param t  position of the edge minus that of the dot's centre [px]
   static Edge edge(double t, double sigma) {
     constexpr double root_half = 0.5 * std::numbers::sqrt2, per_root_two_pi = std::numbers::inv_sqrtpi * root_half;
     double const place = t / sigma;
@@ -118,7 +119,7 @@ class DotLight {
   }
 
   /// Appends the factors of adjacent columns or rows.
-  /// @param first  centre of the first one, minus that of the dot [px]
+  /// @param first  centre of the first column or row minus that of the dot [px]
   void add_factors(double first, int count, double sigma) {
     Edge low = edge(first - 0.5, sigma);
     for (int i = 0; i < count; ++i) {
@@ -160,7 +161,7 @@ class DotLight {
   int first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
   std::array<Part, DotProfile::count> parts_{};
   std::size_t part_count_ = 0;
-  std::vector<Factor> factors_;  // of each part: of the columns, then of the rows
+  std::vector<Factor> factors_;  // factors of each Gaussian: those of the columns, then those of the rows
 };
 
 }  // namespace gladstone::tracking

@@ -14,10 +14,11 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::size_t local_count = 8;  // vectors that determine the local spacing
-constexpr double local_reach = 30;      // largest distance of those vectors, in mean spacings
-constexpr double weight_reach = 2.5;    // radius of the window in widths; the weight there is 0.002
-constexpr double widest = 3;            // widest window of a plane, over the usual one
+constexpr std::size_t local_count = 8;  // number of vectors that determine the local spacing
+// largest distance of the vectors that determine the local spacing, in mean spacings
+constexpr double local_reach = 30;
+constexpr double weight_reach = 2.5;  // radius of the window, in widths H; the weight at this radius is 0.002
+constexpr double widest = 3;          // maximum width of the window of a plane fit, relative to the usual width
 
 /// Vectors under a window, with their weights.
 struct WeightedVectors {
@@ -36,7 +37,7 @@ WeightedVectors compute_weights(Vec2d point, std::span<Vec2d const> positions, N
   for (Eigen::Index k = 0; k < count; ++k) {
     Vec2d const at = (positions[result.index[static_cast<std::size_t>(k)]] - point) / width;
     terms.row(k) << 1, at.x, at.y;
-    // Relative to the nearest vector, so that the weights do not vanish.
+    // Compute the weights relative to that of the nearest vector, so that they do not all underflow to zero.
     gaussian[k] = std::exp(nearest * nearest / (width * width) - dot(at, at));
   }
   result.weight = gaussian / gaussian.sum();
@@ -49,7 +50,8 @@ WeightedVectors compute_weights(Vec2d point, std::span<Vec2d const> positions, N
   return result;
 }
 
-/// Chooses the window at a point, and computes the weights of its vectors; none if no vector is near the point.
+/// Chooses the width of the window at a point, and computes the weights of the vectors in it; empty if no vector is
+/// near the point.
 WeightedVectors choose_weights(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells,
                                GaussianWindow const& window) {
   std::vector<std::size_t> const local = cells.nearest(point, local_count, local_reach * cells.spacing());
@@ -60,7 +62,7 @@ WeightedVectors choose_weights(Vec2d point, std::span<Vec2d const> positions, Ne
   double const spacing = std::max(farthest / std::sqrt(static_cast<double>(local.size())), 1e-9);
   double const width = window.width_over_spacing * spacing;
   if (window.order == WindowOrder::plane) {
-    // A plane that is noisier than a single vector extrapolates: widen the window.
+    // If the value of the fitted plane is noisier than a single vector, the plane extrapolates: widen the window.
     for (double wider = width; wider < widest * width; wider *= 1.25) {
       WeightedVectors const plane = compute_weights(point, positions, cells, nearest, wider, WindowOrder::plane);
       if (!plane.index.empty() && plane.weight.squaredNorm() <= 1) return plane;

@@ -14,20 +14,21 @@
 
 namespace gladstone::tracking {
 
-/// Locates the dots of frames, and remembers the last ones: a frame that belongs to several pairs of a sequence is
-/// located once. Frames are equal if all their grey levels are. One object serves several threads.
+/// Locates the dots of frames and stores the results of the last frames, so that a frame that belongs to several pairs
+/// of a sequence is processed only once. Two frames are the same if all their grey levels are equal. Several threads
+/// may use one object.
 class LocatedFrames {
  public:
   using Located = std::shared_ptr<LocatedDots const>;
 
-  /// @param most_frames  number of frames that are remembered, at least one
+  /// @param most_frames  number of frames whose results are stored, at least one
   LocatedFrames(DotSettings const& settings, std::size_t most_frames)
       : settings_(settings), most_frames_(most_frames) {}
 
-  /// Locates the dots of frames by locate_dots(). Those that another thread is locating are waited for after the
-  /// others have been located.
-  /// @param frames  null: no frame
-  /// @return one result per frame; null without a frame
+  /// Locates the dots of frames by locate_dots(). If another thread is already processing one of the frames, the call
+  /// first processes the other frames and then waits for that thread.
+  /// @param frames  frames to be processed; null: no frame
+  /// @return one result per frame; null where there is no frame
   /// @throws Interrupted
   std::vector<Located> locate(std::span<Image<double> const* const> frames) const;
 
@@ -38,14 +39,14 @@ class LocatedFrames {
     std::shared_future<Located> result{promise.get_future()};
   };
 
-  /// Returns the entry of a frame, and whether it is new.
+  /// Returns the stored entry of a frame, and true if the entry has just been added.
   std::pair<std::shared_ptr<Entry>, bool> find_or_add(Image<double> const& frame) const;
   void remove(std::shared_ptr<Entry> const& entry) const;
 
   DotSettings settings_;
   std::size_t most_frames_;
   mutable std::mutex mutex_;
-  mutable std::list<std::shared_ptr<Entry>> entries_;  ///< the last used one first
+  mutable std::list<std::shared_ptr<Entry>> entries_;  ///< stored frames, the most recently used one first
 };
 
 }  // namespace gladstone::tracking

@@ -12,17 +12,18 @@
 
 namespace gladstone::tracking {
 
-/// Search for the nearest of a set of points. Refers to the points, which must outlive it.
+/// Search for the nearest of a set of points. The points are not copied and must outlive the object.
 class NearestPoints {
  public:
   explicit NearestPoints(std::span<Vec2d const> points)
       : points_(points), spacing_(mean_spacing(points)), cells_(points, 2 * spacing_) {}
 
-  /// Mean spacing, the root of the mean area per point within the points' bounding box [px]; 1 if that is empty.
+  /// Returns the mean spacing: the square root of the mean area per point within the points' bounding box [px]; 1 if
+  /// the box is empty.
   double spacing() const { return spacing_; }
 
-  /// Returns the indices of the (up to) `count` nearest points to c within a radius, nearest first; equal distances in
-  /// the order of the indices.
+  /// Returns the indices of up to `count` points nearest to c within a radius, nearest first; points at equal distances
+  /// are sorted by their index.
   std::vector<std::size_t> nearest(Vec2d c, std::size_t count, double radius) const {
     double reach = std::min(radius, spacing_ * (1 + std::sqrt(0.5 * static_cast<double>(count))));
     while (true) {
@@ -48,7 +49,7 @@ class NearestPoints {
     return indices;
   }
 
-  /// Returns the distance to the nearest point, if that is within a radius [px]; infinite: none.
+  /// Returns the distance to the nearest point within a radius [px]; infinite if there is none.
   double distance(Vec2d c, double radius) const {
     double nearest2 = std::numeric_limits<double>::infinity();
     cells_.for_near(c, radius, [&](std::size_t i) {

@@ -12,7 +12,7 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr double least_decrease = 25;   // smallest decrease of the sum of squares for which a dot is added
-constexpr std::size_t most_splits = 3;  // number of dots whose division is tried per added dot
+constexpr std::size_t most_splits = 3;  // number of dots for which a split is tried before a dot is added
 
 DotFit plain_fit(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model,
                  double most_cost = std::numeric_limits<double>::infinity()) {
@@ -20,14 +20,15 @@ DotFit plain_fit(std::span<FitPixel const> pixels, std::span<GaussianDot const> 
 }
 
 /// Returns whether the residual of a fit may be more than noise.
-/// @param cost  of the fit, or an upper bound of it: false is certain then
+/// @param cost  cost of the fit, or an upper bound of the cost; with a bound, only the result false is certain
 bool has_significant_residual(double cost, int freedom) { return cost > freedom - std::sqrt(2.0 * freedom); }
 
 /// Returns the pixels with the mismatch of the model added to their noise, in proportion to the largest level of the
-/// pixel and its neighbours: at the edge of a dot, the level changes more from pixel to pixel than it is high.
+/// pixel and its neighbours: at the edge of a dot, the level changes from pixel to pixel by more than its own value.
 std::vector<FitPixel> with_mismatch(std::span<FitPixel const> pixels, DotFit const& fit, double mismatch) {
   PixelBox const box = bounding_box(pixels);
-  Image<double> light(box.right - box.left + 3, box.bottom - box.top + 3);  // with a border of one pixel
+  // light of the dots, with a border of one pixel
+  Image<double> light(box.right - box.left + 3, box.bottom - box.top + 3);
   for (std::size_t i = 0; i < pixels.size(); ++i)
     light(pixels[i].column - box.left + 1, pixels[i].row - box.top + 1) =
         pixels[i].level - fit.residual[i] - fit.background;
@@ -42,7 +43,7 @@ std::vector<FitPixel> with_mismatch(std::span<FitPixel const> pixels, DotFit con
   return changed;
 }
 
-/// Returns the cost of a fit with other noise of its pixels.
+/// Returns the cost of a fit for a different noise of the pixels.
 double cost_with(std::span<FitPixel const> pixels, DotFit const& fit) {
   double cost = fit.cost - fit.chi2;
   for (std::size_t i = 0; i < pixels.size(); ++i) cost += std::pow(fit.residual[i] * pixels[i].per_sigma, 2);
@@ -67,7 +68,7 @@ std::vector<std::size_t> sort_by_residual(std::span<FitPixel const> pixels, DotF
   return indices;
 }
 
-/// Splits dot k along the axis of the largest second moment of its residual.
+/// Replaces dot k by two dots, displaced along the axis of the largest second moment of its residual.
 std::vector<GaussianDot> split_dot(std::span<FitPixel const> pixels, DotFit const& fit, std::size_t k) {
   GaussianDot const one = fit.dots[k];
   double const variance = 0.5 * (one.xx + one.yy);
@@ -89,11 +90,11 @@ std::vector<GaussianDot> split_dot(std::span<FitPixel const> pixels, DotFit cons
   return dots;
 }
 
-/// Adds a dot at the largest residual, after a filter of the dots' shape.
+/// Adds a dot at the position of the largest residual after filtering by the shape of the dots.
 std::vector<GaussianDot> add_at_residual(std::span<FitPixel const> pixels, DotFit const& fit, DotModel const& model) {
   double const variance = model.prior.mean[0];
   GaussianDot added{{}, 0, variance, 0, variance};
-  std::vector<double> shapes;  // by the squared distance in pixels
+  std::vector<double> shapes;  // value of the Gaussian at each squared distance [px^2]
   for (int r2 = 0; r2 <= 9 * variance + 1; ++r2) shapes.push_back(std::exp(-0.5 * r2 / variance));
   double most = 0;
   for (FitPixel const& centre : pixels) {
@@ -139,7 +140,7 @@ DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<Gaussian
   DotFit const first = plain_fit(pixels, start, model);
   if (most_additions == 0 || !std::isfinite(first.cost)) return first;
   std::vector<FitPixel> const tolerant = with_mismatch(pixels, first, model.mismatch);
-  // The fit with this noise has at most the cost of the first one.
+  // The cost of the fit with this noise does not exceed that of the first fit.
   if (!has_significant_residual(cost_with(tolerant, first), first.freedom)) return first;
   DotFit best = model.mismatch > 0 ? plain_fit(tolerant, first.dots, model) : first;
   if (!std::isfinite(best.cost)) return first;  // a fit that failed has no residuals

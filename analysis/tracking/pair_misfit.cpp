@@ -13,13 +13,13 @@ namespace {
 
 constexpr double pooled_freedom = 20;  // weight of the median misfit of all dots, in degrees of freedom
 
-/// Mean square of the odd part of the difference of the residuals of a dot in both frames.
+/// Mean square of the odd part of the difference between the residuals of a dot in both frames.
 struct PairMisfit {
-  double mean = 1;     ///< over the variance of the noise of both frames [1]
-  double freedom = 0;  ///< degrees of freedom; 0: not measured
+  double mean = 1;     ///< mean square divided by the variance of the noise of both frames [1]
+  double freedom = 0;  ///< degrees of freedom of the mean square; 0: not measured
 };
 
-/// Difference of the residuals of a dot in two frames at a pixel of frame A, over the noise of both.
+/// Difference between the residuals of a dot in two frames at a pixel of frame A, divided by the noise of both frames.
 class ResidualDifference {
  public:
   ResidualDifference(LocatedDots const& a, LocatedDots const& b, LocatedDot const& in_a, LocatedDot const& in_b)
@@ -29,7 +29,8 @@ class ResidualDifference {
     dy_ = static_cast<int>(std::lround(moved.y));
   }
 
-  /// Mean centre in both frames, registered to frame A by whole pixels [px].
+  /// Returns the mean of the dot's centres in both frames, where the centre in frame B is shifted to frame A by whole
+  /// pixels [px].
   Vec2d centre() const { return 0.5 * (in_a_.image.centre + in_b_.image.centre - Vec2d{1.0 * dx_, 1.0 * dy_}); }
 
   /// Returns the difference [1]; NaN outside of either frame.
@@ -61,7 +62,7 @@ PairMisfit measure_pair_misfit(LocatedDots const& a, LocatedDots const& b, Locat
   for (int row = static_cast<int>(std::ceil(centre.y - reach)); row <= centre.y + reach; ++row)
     for (int column = static_cast<int>(std::ceil(centre.x - reach)); column <= centre.x + reach; ++column) {
       if (!(length(centre - Vec2d{1.0 * column, 1.0 * row}) < reach)) continue;
-      // Odd part; a pixel that is its own mirror image has none.
+      // Odd part of the difference; it is zero at a pixel that is its own mirror image.
       double const odd = 0.5 * (difference.at(column, row) - difference.at(columns - column, rows - row));
       if (!std::isfinite(odd)) continue;
       sum += odd * odd;
@@ -71,11 +72,14 @@ PairMisfit measure_pair_misfit(LocatedDots const& a, LocatedDots const& b, Locat
   return freedom >= 1 ? PairMisfit{sum / freedom, freedom} : PairMisfit{};
 }
 
-/// Draws the misfits of all dots towards their median, since each is estimated from a few pixels.
+/// Replaces the misfit of each dot by a weighted mean with the median misfit of all dots, since it is estimated from a
+/// few pixels.
 void pool_misfits(std::vector<PairMisfit>& misfits) {
   std::vector<double> means;
   for (PairMisfit const& one : misfits)
-    if (one.freedom > 0) means.push_back(one.mean / std::pow(1 - 2 / (9 * one.freedom), 3));  // median to mean of chi2
+    if (one.freedom > 0)
+      means.push_back(one.mean / std::pow(1 - 2 / (9 * one.freedom), 3));  // ratio of mean to median
+                                                                           // of a chi2 distribution
   if (means.empty()) return;
   double const typical = upper_median(std::move(means));
   for (PairMisfit& one : misfits)

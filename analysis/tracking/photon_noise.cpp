@@ -11,11 +11,12 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr std::size_t least_samples = 200;
-constexpr std::size_t most_samples = 20'000;  // determine the gain to about 2 %
-constexpr double median_chi2 = 0.4549;        // of one degree of freedom
+constexpr std::size_t most_samples = 20'000;  // maximum number of samples; they determine the gain to about 2 %
+constexpr double median_chi2 = 0.4549;        // median of chi2 with one degree of freedom
 constexpr int alternations = 20;
-constexpr double least_excess = 0.5;   // smallest shot noise that is regarded, in shares of the other variance
-constexpr double significance = 4;     // smallest excess in standard errors of the median
+// minimum variance of the shot noise that is considered, relative to the remaining variance
+constexpr double least_excess = 0.5;
+constexpr double significance = 4;     // smallest significant excess of the variance, in standard errors of the median
 constexpr double median_error = 2.33;  // standard error of the median of n values of chi2, times sqrt(n) / median
 
 /// Returns the median of square / variance(sample).
@@ -26,8 +27,8 @@ double median_ratio(std::span<ResidualSample const> samples, Variance const& var
   return upper_median(std::move(ratio));
 }
 
-/// Returns the smallest x >= 0 for which the median of square / variance(x, sample) is at most that of chi2. The
-/// variance increases with x.
+/// Returns the smallest x >= 0 for which the median of square / variance(x, sample) is at most the median of chi2. The
+/// variance must increase with x.
 template <class Variance>
 double match_median(std::span<ResidualSample const> samples, Variance const& variance) {
   auto const exceeds = [&](double x) {

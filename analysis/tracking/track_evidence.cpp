@@ -18,7 +18,8 @@ double TrackEvidence::evaluate(Vec2d place, Vec2d displacement) const {
   return std::isfinite(e) ? std::exp(-0.5 * e * e) : 0.0;
 }
 
-/// Returns the distance of the extrapolation from the nearest particle [px]; infinite beyond three tolerances.
+/// Returns the distance of the extrapolation from the nearest particle [px]; infinite if the distance exceeds three
+/// tolerances.
 double TrackEvidence::misfit(Vec2d place, Vec2d displacement) const {
   double least = std::numeric_limits<double>::infinity();
   double const farthest = 3 * tolerance_;

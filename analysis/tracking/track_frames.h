@@ -12,7 +12,7 @@ namespace gladstone::tracking {
 /// over up to four frames.
 class TrackFrames final : public StoredFrames {
  public:
-  /// @param before, after  of the size of the pair; nullopt: missing
+  /// @param before,  after frames before and after the pair, of the same size as the pair; nullopt: missing
   /// @param dots           receives the scattered vectors of a tracking correlator; null: not requested
   TrackFrames(HostFrames pair, std::optional<Image<double>> before, std::optional<Image<double>> after,
               DisplacementField* dots = nullptr)

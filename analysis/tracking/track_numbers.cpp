@@ -7,7 +7,7 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr double same_place = 0.1;  // [px]
+constexpr double same_place = 0.1;  // distance below which two positions belong to the same dot [px]
 
 }  // namespace
 
@@ -17,7 +17,7 @@ std::vector<std::int64_t> TrackNumbers::number(DisplacementField const& dots) {
   std::vector<Vec2d> ends;
   std::vector<std::int64_t> numbers_of_ends;
   for (std::size_t i = 0; i < dots.size(); ++i) {
-    // Valid vectors are at their mid-positions, others at the place in frame A.
+    // Valid vectors are at the mid-position of their dot, other vectors at the dot's position in frame A.
     bool const valid = dots.counts(i);
     Vec2d const half = valid ? 0.5 * dots.displacement_px[i] : Vec2d{};
     std::vector<std::size_t> const same = known.within(dots.position_px[i] - half, same_place);

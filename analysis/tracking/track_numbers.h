@@ -18,7 +18,7 @@ class TrackNumbers {
   explicit TrackNumbers(Continues continues) : continues_(continues) {}
 
   /// Numbers the vectors of the next pair, from 0. A dot belongs to the track that ends within 0.1 px of its place in
-  /// frame A: the fits of one frame for two pairs differ at most if masks of the pairs do.
+  /// frame A: the fits of a frame in two pairs can differ only if the masks of the pairs differ.
   /// @param dots  scattered vectors as returned by matched_vectors()
   std::vector<std::int64_t> number(DisplacementField const& dots);
 

@@ -15,7 +15,8 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr Vec2d unknown{not_a_number, not_a_number};
-constexpr std::size_t frames_per_pair = 4;  // with those before and after the pair
+// number of frames per pair: its two frames, the frame before and the frame after
+constexpr std::size_t frames_per_pair = 4;
 
 /// Converts the table [correlate.tracking] and the known dots to settings of track_dots().
 /// @pre the words of the table are valid
@@ -52,7 +53,8 @@ DisplacementField certain_vectors(DisplacementField field) {
   return field;
 }
 
-/// Invalidates the vectors of frames that do not correlate. Those of dots move to the place of the dot in frame A.
+/// Invalidates the vectors of frames that do not correlate. Vectors of dots are moved to the position of the dot in
+/// frame A.
 void invalidate(DisplacementField& field) {
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (field.status[i] == VectorStatus::masked) continue;
@@ -84,8 +86,8 @@ class TrackingCorrelator final : public Correlator {
     DisplacementField field = on_grid_ ? interpolate_to_grid(predictor, dots) : dots;
     field.verdict = predictor.verdict;
     field.warnings.clear();
-    for (std::string const& warning : predictor.warnings)
-      field.warnings.push_back("correlation that predicts the displacements of dots: " + warning);
+    for (Warning const& warning : predictor.warnings)
+      field.warnings.push_back(at_place("correlation that predicts the displacements of dots", warning));
     field.warnings.insert(field.warnings.end(), dots.warnings.begin(), dots.warnings.end());
     if (!frames_correlate(predictor)) {
       invalidate(field);

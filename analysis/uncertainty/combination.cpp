@@ -74,7 +74,7 @@ UncertaintyCombination fit_combination(std::span<UncertaintySample const> sample
                                        std::vector<std::string> const& methods) {
   GLADSTONE_EXPECTS(samples.size() > methods.size());
   Eigen::Index const size = static_cast<Eigen::Index>(methods.size()) + 1;
-  // Start from the mean of all logarithms, with the optimal scale for it.
+  // Start from the mean of all logarithms and the constant that is optimal for this mean.
   Eigen::VectorXd c = Eigen::VectorXd::Constant(size, 1.0 / static_cast<double>(methods.size())), gradient;
   c(0) = 0.0;
   double squares = 0.0;

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t windows_per_piece = 64;
 
-/// Pixels of a window, eight of a row at a time.
+/// Access to the pixels of a window, eight pixels of a row at a time.
 struct LanePixels {
   ImagePair const& pair;
-  float scale;                     ///< factor applied to grey levels
+  float scale;                     ///< factor by which grey levels are multiplied
   std::vector<float> const& axis;  ///< weights along either axis, followed by zeros up to a multiple of eight
   int first_x, first_y;            ///< image position of the window's first pixel
 
@@ -31,7 +31,7 @@ struct LanePixels {
   }
 
  private:
-  /// Returns the pixels at a position that extends beyond the image; those outside have weight 0.
+  /// Returns eight pixels some of which are outside the image; these have the weight 0.
   MatchedPixels<FloatLanes> cut_off(int column, long long from, FloatLanes weight) const {
     MatchedPixels<FloatLanes> pixels{};
     for (int l = 0; l < lane_count; ++l) {

@@ -7,8 +7,8 @@
 namespace gladstone {
 namespace {
 
-/// Minimum degrees of freedom (dots minus one), averaged over a window and its neighbours, for an estimate of the
-/// scatter.
+/// Minimum degrees of freedom (dots minus one), averaged over a window and its neighbours, required for an estimate of
+/// the scatter of the disparities.
 constexpr double least_freedom = 0.25;
 
 }  // namespace

@@ -20,9 +20,11 @@ Vec2<int> first_pixel(InterrogationGrid const& grid, std::size_t vector, int sid
 /// Pixels of one window of the matched frames, row by row.
 struct MatchedWindow {
   int side;                      ///< side of the support [px]
-  std::vector<float> reference;  ///< grey levels minus the weighted mean; 0 where the weight is 0
-  std::vector<float> flow;       ///< likewise, scaled to the same weighted sum of squares as the reference
-  std::vector<float> weight;     ///< weights of the correlator on either frame; 0 outside the image and where unknown
+  std::vector<float> reference;  ///< grey levels of frame A minus their weighted mean; 0 where the weight is 0
+  /// Grey levels of frame B minus their weighted mean, scaled to the same weighted sum of squares as frame A.
+  std::vector<float> flow;
+  /// Weights that the correlator applies to each frame; 0 at pixels that are unknown or outside the image.
+  std::vector<float> weight;
 
   std::size_t at(int i, int j) const { return static_cast<std::size_t>(j) * side + i; }
 };
@@ -31,7 +33,7 @@ struct MatchedWindow {
 void visit_matched_windows(UncertaintyInput const& input,
                            std::function<void(std::size_t vector, MatchedWindow const& window)> const& visit);
 
-/// Applies mean_of_neighbours() to every value.
+/// Replaces every value by the mean over its 3 x 3 neighbourhood, see mean_of_neighbours().
 std::vector<double> averaged_over_neighbours(std::vector<double> const& values, InterrogationGrid const& grid);
 
 /// Returns the standard uncertainties from the variances along both axes, averaged over neighbours [px].

@@ -9,11 +9,11 @@
 namespace gladstone {
 namespace {
 
-/// Empirical factor, fitted to the errors of the default passes for dots of 3 px at 5 % noise. The number of dots
-/// replaces the mutual information of the authors, who fit both to synthetic images.
+/// Empirical factor, fitted to the errors of the default passes for dots of 3 px at 5 % noise. Bhattacharya et al. use
+/// the mutual information instead of the number of dots, and fit both to synthetic images.
 constexpr double calibration = 0.22;
-/// Lower bound of the displacement variance [px^2]: peaks of noise-free images are as narrow as the filter, or narrower
-/// by rounding.
+/// Lower bound of the displacement variance [px^2]: in noise-free images, peaks are as narrow as the filter, or even
+/// narrower because of rounding.
 constexpr double least_variance = 1e-4;
 
 /// Returns the variance of the Gaussian through three samples, at most 16 px^2; NaN if a sample is not positive.

@@ -7,10 +7,11 @@
 namespace gladstone {
 namespace {
 
-/// Half width of the compared square of pixels around a dot's maximum: covers dots up to 5 px.
+/// Half width of the square of pixels around a dot's maximum in which the frames are compared [px]: covers dots of up
+/// to 5 px.
 constexpr int reach = 2;
 
-/// Returns whether a frame has a positive maximum at most a pixel from (i, j).
+/// Returns whether a frame has a positive maximum at a distance of at most one pixel from (i, j) along each axis.
 bool has_dot(MatchedWindow const& w, std::vector<float> const& frame, int i, int j) {
   int x = i, y = j;
   for (int dy = -1; dy <= 1; ++dy)
@@ -43,8 +44,8 @@ std::optional<Vec2d> disparity_of_dot(MatchedWindow const& w, int i, int j) {
       xx += a.x * b.x;
       xy += 0.5 * (a.x * b.y + a.y * b.x);
       yy += a.y * b.y;
-      // A central difference over two pixels is the derivative averaged over them, so the frame difference is averaged
-      // in the same way (Simpson's rule).
+      // A central difference over two pixels is the derivative averaged over these pixels, so the difference between
+      // the frames is averaged in the same way (Simpson's rule).
       double const here = 4.0 * difference(x, y);
       by_x += 0.5 * (a.x + b.x) * (difference(x - 1, y) + here + difference(x + 1, y)) / 6.0;
       by_y += 0.5 * (a.y + b.y) * (difference(x, y - 1) + here + difference(x, y + 1)) / 6.0;

@@ -12,18 +12,19 @@ namespace gladstone {
 namespace {
 
 constexpr int frequencies = 96;
-/// Highest frequency along an axis, in cycles per final window: a Gaussian window's response is below 1e-10 there.
+/// Highest frequency along an axis, in cycles per final window: at this frequency, the response of a Gaussian window is
+/// below 1e-10.
 constexpr double highest = 4.0;
 
-/// Response of a window along one axis. @param f  frequency [1/px]
+/// Returns the frequency response of a window along one axis. @param f  frequency [1/px]
 double window_response(WindowWeighting weighting, double f, double window_px) {
   double const phase = pi * f * window_px;
   if (weighting == WindowWeighting::gaussian) return std::exp(-0.5 * phase * phase / pi);
   return phase == 0.0 ? 1.0 : std::sin(phase) / phase;
 }
 
-/// Response of the predictor along one axis. @param f  frequency [1/node]
-/// @param smoothing  weight of CorrelationSchedule::smoothing()
+/// Returns the frequency response of the predictor along one axis. @param f  frequency [1/node]
+/// @param smoothing  smoothing weight, see CorrelationSchedule::smoothing()
 double predictor_response(double f, double smoothing) {
   constexpr int steps = 64;
   double sum = 0.0;

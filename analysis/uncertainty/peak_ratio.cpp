@@ -5,8 +5,8 @@
 namespace gladstone {
 namespace {
 
-// Fitted to the errors of the default passes for dots of 3 px at 5 % noise; docs/estimators.md reports their validity
-// for other seeds.
+// Fitted to the errors of the default passes for dots of 3 px at 5 % noise; docs/estimators.md reports how well it
+// applies to other images.
 constexpr double slope_px = 0.23;
 constexpr double power = 1.0;
 constexpr double least_px = 0.003;

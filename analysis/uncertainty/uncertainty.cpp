@@ -20,7 +20,7 @@ namespace {
 struct NamedUncertainty {
   char const* name;
   UncertaintyMethod estimate;
-  bool on_gpu = false;  ///< whether the CUDA correlator supports it
+  bool on_gpu = false;  ///< whether the CUDA correlator supports the method
 };
 
 /// Table of all uncertainty methods.
@@ -32,7 +32,7 @@ constexpr std::array uncertainties{
     NamedUncertainty{"combination", combined_uncertainty},
 };
 
-/// Deforms both frames by the whole field, with gaps filled.
+/// Deforms both frames by the measured displacement field, whose gaps are filled first.
 ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const& grid, StoredFrames const& frames,
                          CorrelationSchedule const& schedule) {
   std::vector<GridVector> vectors(field.size());
@@ -86,14 +86,15 @@ std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input) {
 std::string uncertainty_caveat(CorrelationSettings const& settings) {
   if (!settings.estimates_uncertainty()) return "";
   std::string const method = "uncertainty by " + settings.uncertainty + " is too small ";
-  if (settings.method == "rpc" || settings.method == "spc") {
+  CorrelationMethod const& correlation = correlation_method(settings.method);
+  if (correlation.by_phase) {
     return method + "for correlate.method = \"" + settings.method +
-           "\", whose phase weighting amplifies noise (docs/estimators.md); use \"scc\" if the uncertainty matters";
+           "\", whose phase weighting amplifies noise (docs/estimators.md); use \"scc\" if the uncertainty is required";
   }
-  if (correlation_method(settings.method).optical_flow) {
+  if (correlation.optical_flow) {
     return method + "for correlate.method = \"" + settings.method +
            "\", an optical flow, whose errors exceed the noise of a window (docs/estimators.md); use \"scc\" if the "
-           "uncertainty matters";
+           "uncertainty is required";
   }
   bool const matched = settings.window_px.size() > 1 || settings.final_passes > 1;
   return matched

@@ -15,7 +15,8 @@ namespace gladstone {
 /// Input of an uncertainty estimate.
 struct UncertaintyInput {
   DisplacementField const& field;
-  ImagePair const& matched;  ///< both frames deformed by the field, so that they coincide except for errors
+  /// Both frames, deformed by the measured field so that they coincide apart from its errors.
+  ImagePair const& matched;
   InterrogationGrid const& grid;
   CorrelationSettings const& settings;
 };
@@ -23,25 +24,26 @@ struct UncertaintyInput {
 /// Estimates the standard uncertainty of each vector of the field [px]; NaN: no estimate.
 using UncertaintyMethod = std::vector<Vec2d> (*)(UncertaintyInput const& input);
 
-/// Estimates the uncertainty from the asymmetry of the correlation peak (correlation statistics). The difference
-/// between the correlation on both sides of the peak vanishes except for noise; its variance follows from its terms and
-/// their covariance with neighbouring pixels. Wieneke, Meas. Sci. Technol. 26 (2015) 074002, Eqs. 6 to 12, with the
-/// sums rearranged so that covariances extend no farther than those of the pixel noise, times
-/// amplification_of_passes(). Contains no fitted factor.
+/// Estimates the uncertainty from the asymmetry of the correlation peak (correlation statistics). Without noise, the
+/// correlations on both sides of the peak would be equal. The variance of their difference follows from the terms of
+/// the difference (one for each pixel) and the covariances between terms of neighbouring pixels. Wieneke, Meas. Sci.
+/// Technol. 26 (2015) 074002, Eqs. 6 to 12, with the sums rearranged so that covariances extend no farther than those
+/// of the pixel noise, times amplification_of_passes(). Contains no fitted factor.
 std::vector<Vec2d> correlation_statistics(UncertaintyInput const& input);
 /// Estimates the uncertainty from the disparities of paired particle images in the matched frames: their scatter
 /// divided by the square root of their number. Sciacchitano, Wieneke & Scarano, Meas. Sci. Technol. 24 (2013) 045302,
 /// Eqs. 5 to 8, with the scatter about zero of the dots of a window and its neighbours, times
-/// amplification_of_passes(). The mean disparity is not added, because frames matched by the vectors themselves have
-/// none apart from the scatter. Contains no fitted factor.
+/// amplification_of_passes(). The mean disparity is not added, because it is zero apart from the scatter if the frames
+/// were matched by the vectors themselves. Contains no fitted factor.
 std::vector<Vec2d> image_matching(UncertaintyInput const& input);
 /// Estimates the uncertainty from the ratio Q of the highest to the second highest correlation peak: sigma^2 = (a
 /// Q^-b)^2 + c^2, the form of Charonko & Vlachos, Meas. Sci. Technol. 24 (2013) 065301, Eq. 10, without its term for
 /// gross errors.
 std::vector<Vec2d> peak_ratio_uncertainty(UncertaintyInput const& input);
 /// Estimates the uncertainty from the width of the probability distribution of the displacement, divided by the square
-/// root of the number of particle images. The distribution is the peak of the phase correlation minus the width of its
-/// filter. Bhattacharya, Charonko & Vlachos, Meas. Sci. Technol. 29 (2018) 115301, Eqs. 6 to 11.
+/// root of the number of particle images. The width of the distribution is that of the peak of the phase correlation,
+/// from which the width of the spectral filter is subtracted. Bhattacharya, Charonko & Vlachos, Meas. Sci. Technol. 29
+/// (2018) 115301, Eqs. 6 to 11.
 std::vector<Vec2d> moment_of_correlation(UncertaintyInput const& input);
 
 /// Combines the methods above with the weights of shipped_combination(). For methods without an estimate see
@@ -56,16 +58,16 @@ std::vector<std::string> uncertainty_methods();
 bool uncertainty_on_gpu(std::string const& method);
 
 /// Returns the settings with uncertainty = "auto" replaced: by correlation statistics on a CPU, where they cost about
-/// half as much as the correlation, if they do not underestimate the uncertainty with these settings
-/// (uncertainty_caveat()), else by "none". Other settings remain.
+/// half as much as the correlation, if this method does not underestimate the uncertainty with these settings
+/// (uncertainty_caveat()), else by "none". All other settings remain unchanged.
 /// @param on_cpu  whether the vectors are correlated on a CPU
 CorrelationSettings choose_uncertainty(CorrelationSettings settings, bool on_cpu);
 
-/// Frames and device of a correlation, by which uncertainty = "auto" chooses.
+/// Kinds of frames and devices of a correlation, on which the choice of uncertainty = "auto" depends.
 enum class CorrelatedFrames { pair_on_cpu, pair_on_gpu, sequence, ensemble };
 
-/// Records in the field which method estimated its uncertainty, and which key selected it. For "auto" that estimated
-/// none, the reason follows the key, e.g. `correlate.uncertainty = "auto" (on a GPU)`.
+/// Records in the field which method estimated its uncertainty, and which key selected it. If "auto" selected no
+/// method, the reason follows the key, e.g. `correlate.uncertainty = "auto" (on a GPU)`.
 /// @param given  settings before choose_uncertainty()
 void record_uncertainty(DisplacementField& field, CorrelationSettings const& given, CorrelatedFrames frames);
 
@@ -74,14 +76,15 @@ void record_uncertainty(DisplacementField& field, CorrelationSettings const& giv
 /// warning.
 std::string uncertainty_caveat(CorrelationSettings const& settings);
 
-/// Estimates field.sigma_px by settings.uncertainty; does nothing without a method and for tracked dots. Vectors whose
-/// status is not valid get NaN: replaced vectors were not measured in their own window.
+/// Estimates field.sigma_px by settings.uncertainty; does nothing without a method and for tracked dots. The
+/// uncertainty of vectors whose status is not valid is set to NaN; replaced vectors, for example, were not measured in
+/// their own window.
 /// @param field  result of a correlator for these frames and settings
 void estimate_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
-/// Estimates field.sigma_px if it is empty, or if the decorrelation test has invalidated vectors since. An existing
-/// estimate otherwise remains; after the test all are recomputed, because invalidated vectors must not affect the
-/// deformation of the frames.
+/// Estimates field.sigma_px if it is empty, or if the decorrelation test has invalidated vectors since. In all other
+/// cases, an existing estimate remains. After the test, the uncertainties of all vectors are recomputed, because
+/// invalidated vectors must not affect the deformation of the frames.
 void complete_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
 }  // namespace gladstone

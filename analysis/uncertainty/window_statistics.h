@@ -24,14 +24,16 @@ struct OneColumn {
 /// Pixels of both frames in one row, for one or several columns.
 template <class Value>
 struct MatchedPixels {
-  Value weight;     ///< weight of the correlator on either frame; 0 if one is unknown
-  Value reference;  ///< grey levels, always finite
+  /// Weight that the correlator applies to each frame; 0 if the pixel is unknown in one of the frames.
+  Value weight;
+  Value reference;  ///< grey levels of frame A, always finite
   Value flow;
 };
 
-/// Weighted means and relative brightness of a window's frames, which are removed before the sums.
+/// Weighted means and relative brightness of the two frames in a window. Their effects are removed before the sums are
+/// computed.
 struct WindowLevels {
-  float reference = 0.0f;  ///< weighted means
+  float reference = 0.0f;  ///< weighted mean of frame A
   float flow = 0.0f;
   float flow_gain = 1.0f;  ///< factor that gives the mean-free frame B the same weighted sum of squares as frame A
 };
@@ -78,10 +80,10 @@ struct StatisticsSums {
   }
 };
 
-/// Contribution of one thread to the sums over a window. Calls of all threads, in this order, with a barrier after
-/// each; between barriers no two threads access the same memory unless both only read:
-///  1. clear(), and sum_pixels(), whose totals over all threads give the means;
-///  2. sum_squares(), whose totals give the gain of frame B;
+/// Contribution of one thread to the sums over a window. All threads must make the following calls in this order, with
+/// a barrier after each call. Between barriers, no two threads access the same memory unless both only read it:
+/// 1. clear() and sum_pixels(), whose totals over all threads yield the means;
+/// 2. sum_squares(), whose totals over all threads yield the gain of frame B;
 ///  3. step(n) for n = 0 .. steps(side) - 1.
 /// Row n is weighted in step n, its terms are formed in step n + 2, when the rows above and below are available, and
 /// multiplied by the surrounding terms in step n + 3. Products are summed over neighbours up to two pixels apart along
@@ -92,12 +94,12 @@ template <class Columns>
 struct WindowStatistics {
   using Value = typename Columns::Value;
 
-  float* memory;  ///< values(side) floats
+  float* memory;  ///< scratch memory of values(side) floats
   int side;       ///< side of the window [px]
   int thread;     ///< index of this thread, 0 .. threads - 1; threads process interleaved groups of columns
   int threads;
 
-  static constexpr int margin = 8;  ///< columns of zeros on either side; terms use two of them
+  static constexpr int margin = 8;  ///< number of columns of zeros on either side, of which the terms use two
   GLADSTONE_HD static int pitch(int side) { return (side + 7) / 8 * 8 + 2 * margin; }
   GLADSTONE_HD static int values(int side) { return rows * pitch(side); }
   GLADSTONE_HD static int steps(int side) { return side + 3; }
@@ -155,22 +157,23 @@ struct WindowStatistics {
   }
 
  private:
-  static constexpr int weighted_rows = 4;  ///< rows of each image in memory: one being written, three being read
-  static constexpr int image_count = 3;    ///< A, B, w
-  static constexpr int term_count = 4;     ///< p^2 and t along x, then along y
+  /// Number of rows of each image in memory: one being written, three being read.
+  static constexpr int weighted_rows = 4;
+  static constexpr int image_count = 3;  ///< number of images: A, B, w
+  static constexpr int term_count = 4;   ///< number of terms: p^2 and t along x, then along y
   static constexpr int rows = image_count * weighted_rows + 2 * term_count + 2 * term_count;
 
   GLADSTONE_HD int first() const { return thread * Columns::count; }
   GLADSTONE_HD int ahead() const { return threads * Columns::count; }
   GLADSTONE_HD float* row_in_memory(int number) const { return memory + number * pitch(side) + margin; }
-  /// Row -1 was cleared by clear(), and row `side` is written as zeros.
+  /// Returns a weighted row of an image. clear() sets row -1 to zero; row `side` is written as zeros.
   GLADSTONE_HD float* weighted(int image, int row) const {
     return row_in_memory(image * weighted_rows + (row + weighted_rows) % weighted_rows);
   }
   GLADSTONE_HD float* terms(int which, int row) const {
     return row_in_memory(image_count * weighted_rows + 2 * which + row % 2);
   }
-  /// Sums of a row's terms over their neighbours along x; read only by the thread that wrote them.
+  /// Returns the sums of a row's terms over their neighbours along x; only the thread that wrote these sums reads them.
   GLADSTONE_HD float* across(int which, int row) const {
     return row_in_memory(image_count * weighted_rows + 2 * term_count + 2 * which + row % 2);
   }
@@ -225,8 +228,8 @@ struct WindowStatistics {
   GLADSTONE_HD void multiply_terms(int row, StatisticsSums& sums) const {
     auto const products = [&](int which) {
       float const* const t = terms(which, row);
-      float const* const above = across(which, row + 1);  // of row - 1, which shares memory with row + 1
-      float* const here = across(which, row);             // of row - 2, until it is overwritten
+      float const* const above = across(which, row + 1);  // terms of row - 1, which shares memory with row + 1
+      float* const here = across(which, row);             // terms of row - 2, until they are overwritten
       Value sum{};
       for (int x = first(); x < side; x += ahead()) {
         Value const middle = Columns::load(t + x);
@@ -244,27 +247,28 @@ struct WindowStatistics {
   }
 };
 
-/// Upper bound of the variance: uniform distribution within one pixel of the highest sample [px^2]. Nearly flat peaks
-/// would give arbitrarily large values.
+/// Upper bound of the variance: that of a uniform distribution within one pixel of the highest sample [px^2]. Without
+/// this bound, nearly flat peaks would yield arbitrarily large values.
 constexpr double largest_variance = 1.0 / 3.0;
 
-/// Smallest variance, as a share of that of terms without covariances. Without noise, errors of interpolation remain,
-/// whose sign alternates from pixel to pixel: terms cancel their neighbours, and the sum over neighbours can be zero or
-/// negative. Of N independent terms it has a relative standard error of sqrt(2 (3.5^2 - 1) / N), where 3.5 is the sum
-/// of the squared weights along an axis. That is 0.1 for N = 2250, the pixels of four windows of 24 px, which the mean
-/// over 3 x 3 windows at half overlap contains: a smaller sum cannot be distinguished from zero.
+/// Lower bound of the variance, as a fraction of the variance without the covariances between terms. Without noise,
+/// errors of interpolation remain, whose sign alternates from pixel to pixel: terms cancel their neighbours, and the
+/// sum over neighbours can be zero or negative. For N independent terms, the sum has a relative standard error of
+/// sqrt(2 (3.5^2 - 1) / N), where 3.5 is the sum of the squared weights along an axis. This error is 0.1 for N = 2250,
+/// the number of pixels of four windows of 24 px, over which the mean over 3 x 3 windows at half overlap extends. A
+/// smaller sum cannot be distinguished from zero.
 constexpr double smallest_share = 0.1;
 
 /// Returns the variance of a displacement along an axis (0: x, 1: y) [px^2]; NaN if the peak has no maximum.
 /// - The three-point Gaussian fit u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)) gives sigma_u = sigma(C+ - C-)/(4
 ///   C1 ln(C0/C1)), with C1 the mean of C+ and C-.
 /// - The terms a_i b_(i+1) - a_(i+1) b_i of C+ - C- equal s_i d_(i+1) - s_(i+1) d_i up to a factor, with s the sum
-///   and d the difference of the frames. Summation by parts gives d_i (s_(i-1) - s_(i+1)): the noise of a pixel is then
-///   in one term, not in two of opposite sign whose covariance extends over a dot diameter.
-/// - The frames were matched by the displacement to be assessed, which reduces the sum. If p_i^2/sum p^2 is the share
-///   of a term in the variance (uniform noise), the relative reduction is the sum of the products of shares over pairs
-///   of neighbouring terms. The result is corrected for it.
-/// - The variance is at least smallest_share of that of terms without covariances.
+///   and d the difference of the frames. Summation by parts gives d_i (s_(i-1) - s_(i+1)): the noise of a pixel then
+///   occurs in one term only, instead of two terms of opposite sign whose covariance extends over a dot diameter.
+/// - The frames were matched by the displacement whose uncertainty is estimated, which reduces the sum of the terms.
+///   For uniform noise, the share of a term in the variance is p_i^2/sum p^2, and the relative reduction is the sum of
+///   the products of two shares over all pairs of neighbouring terms. The result is corrected for this reduction.
+/// - The variance is at least smallest_share times the variance without covariances between terms.
 GLADSTONE_HD inline double displacement_variance(StatisticsSums const& sums, int axis) {
   using std::log;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();

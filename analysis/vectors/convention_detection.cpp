@@ -19,7 +19,8 @@ using detail::fit_within;
 using detail::same_axes;
 using detail::Truth;
 
-/// Returns all candidate conventions. The format's own come first, so that they win ties.
+/// Returns all candidate conventions. The format's own conventions come first, so that they are selected among equally
+/// good ones.
 std::vector<VectorConventions> every_choice(std::vector<VectorConventions> const& own) {
   std::vector<VectorConventions> choices = own;
   auto const consider = [&choices](VectorConventions const& c) {
@@ -76,7 +77,7 @@ std::vector<ConventionFit> best_of_axes(std::vector<ConventionFit> const& fits) 
 }
 
 Verdict judge(ConventionFit const& best) {
-  // Require three standard errors, since this is the best of some sixty candidates.
+  // Require a slope of three standard errors, since this fit is the best of some sixty candidates.
   if (best.spread_px < best.signal_spread_px && best.slope > 3.0 * best.slope_error) return Verdict::fits;
   if (!(best.signal_px >= min_decidable_signal_px)) return Verdict::cannot_be_told;
   bool const follows = best.slope - 2.0 * best.slope_error > 0.5 && best.slope < 2.0;
@@ -84,7 +85,7 @@ Verdict judge(ConventionFit const& best) {
 }
 
 /// Returns true if the difference from the best fit is insignificant, or small enough to be caused by estimator errors
-/// in a flow of similar appearance: 10 % of the rms for other axes, 5 % for another offset.
+/// in a flow that is similar in both interpretations: 10 % of the rms for different axes, 5 % for a different offset.
 bool fits_as_well(ConventionFit const& fit, ConventionFit const& best) {
   double const part = same_axes(fit.conventions, best.conventions) ? 0.95 : 0.9;
   return !(part * fit.spread_px > best.spread_px) || log_likelihood_statistic(best, fit) < 9.0;
@@ -126,9 +127,9 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   for (VectorConventions const& choice : every_choice(own))
     fits.push_back(fit_within(few, choice, truth, image_rows, most));
 
-  // Use the first of the format's own conventions unless another fits better. For an offset alone, significance
-  // suffices: software with image deformation measures at the nodes of its grid, but with a single pass half a pixel
-  // away.
+  // Use the first of the format's own conventions unless another of them fits better. If they differ in the offset
+  // only, a significant improvement suffices: software with image deformation measures at the nodes of its grid, but
+  // half a pixel away from them with a single pass.
   DetectedConventions result;
   ConventionFit chosen = fits.front();
   for (std::size_t i = 1; i < own.size(); ++i) {
@@ -143,8 +144,8 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
     result.verdict = Verdict::cannot_be_told;
   if (result.verdict == Verdict::cannot_be_told) chosen = fits.front();
 
-  // A better fit that is not the format's own is a mistake if the improvement is clear and, given the number of
-  // candidates, significant at four standard deviations.
+  // If conventions other than the format's own fit better, the file contains a mistake, provided that the improvement
+  // is large and significant. Four standard deviations are required because of the number of candidates.
   bool const reads = result.verdict == Verdict::fits || result.verdict == Verdict::noisy;
   double const clearly = same_axes(result.best.conventions, chosen.conventions) ? 0.95 : 0.9;
   bool const is_own = std::find(own.begin(), own.end(), result.best.conventions) != own.end();
@@ -152,7 +153,8 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
       log_likelihood_statistic(result.best, chosen) > 16.0) {
     result.mistake = {describe_difference(result.best.conventions, chosen.conventions),
                       describe(result.best.conventions), result.best, chosen};
-    for (ConventionFit const& other : result.tried) {  // other mistakes that are indistinguishable in this displacement
+    // add other mistakes that this displacement does not distinguish from the first one
+    for (ConventionFit const& other : result.tried) {
       if (same_axes(other.conventions, result.best.conventions) || !fits_as_well(other, result.best)) continue;
       if (detail::convention_penalty(other.conventions, own) >
           detail::convention_penalty(result.best.conventions, own) + 0.5)

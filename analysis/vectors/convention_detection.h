@@ -12,67 +12,71 @@ namespace gladstone {
 /// Agreement of vectors, interpreted by given conventions, with the true displacement.
 struct ConventionFit {
   VectorConventions conventions;
-  /// RMS difference from the truth; each difference is limited to 1 px or three times the signal, if larger.
+  /// RMS difference from the truth; each difference is limited to the larger of 1 px and three times the signal [px].
   double rms_px = 0.0;
-  double signal_px = 0.0;  ///< rms of the truth at the vectors, which is the error of zero vectors
-  /// Both quantities as used for decisions: rms over both components of their robust standard deviations, which a few
-  /// per cent of outliers hardly change.
+  double signal_px = 0.0;  ///< rms of the truth at the vectors, which would be the error of zero vectors [px]
+  /// Robust versions of rms_px and signal_px, which are used for decisions: rms over both components of the robust
+  /// standard deviations, which a few per cent of outliers hardly change [px].
   double spread_px = 0.0, signal_spread_px = 0.0;
-  /// Regression slope of the vectors on the truth, sum m t / sum t^2: 1 for unbiased vectors regardless of noise, 0 for
-  /// unrelated ones.
+  /// Regression slope of the vectors m on the truth t, sum m t / sum t^2 [1]: 1 for unbiased vectors regardless of
+  /// their noise, 0 for vectors unrelated to the truth.
   double slope = 0.0;
   double slope_error = 0.0;    ///< standard error of `slope`, assuming that neighbouring windows overlap by half
   std::size_t components = 0;  ///< number of compared vector components
 };
 
-/// Correction of a file's vectors, applied before its conventions, along the axes of the file.
+/// Correction of a file's vectors along the axes of the file, applied before the conversion by its conventions.
 struct VectorCorrection {
-  Vec2d factor{1.0, 1.0};     ///< displacements are divided by it
-  Vec2d offset_px{};          ///< is subtracted from the displacements
-  double place_factor = 1.0;  ///< positions are divided by it
-  Vec2d shift_px{};           ///< is added to the positions
+  Vec2d factor{1.0, 1.0};     ///< number by which the displacements are divided
+  Vec2d offset_px{};          ///< displacement that is subtracted from all displacements
+  double place_factor = 1.0;  ///< number by which the positions are divided
+  Vec2d shift_px{};           ///< vector that is added to the positions
 
   friend bool operator==(VectorCorrection const&, VectorCorrection const&) = default;
 };
 
 /// Probable error in foreign vectors: an interpretation other than the format's own fits the truth clearly better.
 struct ProbableMistake {
-  std::string text;               ///< "v points up", "displacements are 10 times the truth"; empty: no mistake found
-  std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words can
-  ConventionFit corrected_fit{};  ///< fit after correction, in the interpretation without the mistake
-  ConventionFit as_read{};        ///< fit without correction
-  VectorCorrection correction{};  ///< numbers without the mistake
+  /// Description such as "v points up" or "displacements are 10 times the truth"; empty: no mistake found.
+  std::string text;
+  std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words correct it
+  ConventionFit corrected_fit{};  ///< fit of the vectors after correction of the mistake
+  ConventionFit as_read{};        ///< fit of the vectors as the format defines them, without correction
+  VectorCorrection correction{};  ///< correction of the file's numbers that undoes the mistake
 
   bool found() const { return !text.empty(); }
-  /// Returns the text, both rms differences and the remedy, as a warning.
+  /// Returns a warning that contains the text, both rms differences and the remedy.
   std::string warning() const;
 };
 
 /// Result of detect_conventions().
 struct DetectedConventions {
   enum class Verdict {
-    fits,                ///< significantly closer to the truth than zero vectors
-    noisy,               ///< not closer than zero vectors, but correlated with the truth: right axes, large errors
-    mistaken,            ///< an interpretation, scale or shift that is not the format's own fits clearly better
-    cannot_be_told,      ///< neither fits nor noisy, and the truth is too small or too fine to decide
-    no_convention_fits,  ///< neither fits nor noisy, although the truth is large and smooth enough to decide
+    fits,  ///< the vectors are significantly closer to the truth than zero vectors
+    /// The vectors are not closer to the truth than zero vectors, but correlated with it: correct axes, large errors.
+    noisy,
+    mistaken,  ///< an interpretation, scale or shift that differs from the format's own fits clearly better
+    /// Neither `fits` nor `noisy`, and the truth is too small or varies on too small a scale to decide.
+    cannot_be_told,
+    no_convention_fits,  ///< neither `fits` nor `noisy`, although the truth is large and smooth enough to decide
   };
-  VectorConventions conventions;  ///< conventions to use: of the format's own, those that fit best
+  VectorConventions conventions;  ///< conventions to be used: the best fitting of the format's own conventions
   Verdict verdict = Verdict::fits;
   ProbableMistake mistake;
-  ConventionFit fit;             ///< fit of `conventions`
-  ConventionFit best;            ///< best fit of all interpretations; of equally good ones, the likeliest
+  ConventionFit fit;  ///< fit of `conventions`
+  /// Best fit of all interpretations; of equally good fits, that of the likeliest interpretation.
+  ConventionFit best;
   ConventionFit without_offset;  ///< fit of `conventions` with offset 0
   /// Every combination of axes, signs and columns with its best offset, in ascending order of rms.
   std::vector<ConventionFit> tried;
-  /// Another choice of axes or sign fits as well; `conventions` are the format's own.
+  /// True if another choice of axes or signs fits equally well; `conventions` are then the format's own.
   bool ambiguous = false;
-  /// One line for the log; for no_convention_fits, the tried interpretations and probable causes.
+  /// Report for the log: one line, or, for no_convention_fits, the tried interpretations and probable causes.
   std::string report;
 };
 
-/// Minimum rms of the truth that allows conventions to be distinguished: about the error of correlation on good images
-/// [px].
+/// Minimum rms of the truth for which conventions can be distinguished: approximately the error of a correlation of
+/// good images [px].
 inline constexpr double min_decidable_signal_px = 0.01;
 
 /// Returns true if the truth varies so much within windows of four grid spacings (16 to 64 px) that vectors of such
@@ -80,11 +84,11 @@ inline constexpr double min_decidable_signal_px = 0.01;
 bool is_too_fine_for_windows(DisplacementField const& ours, std::function<Vec2d(Vec2d)> const& truth);
 
 /// Determines the conventions of a file's vectors and detects probable mistakes by comparison with the truth.
-/// - Of the format's own interpretations (VectorFile::also), the first is used unless another fits significantly
-///   better.
-/// - Alternatives are all combinations of y axis, v sign and frame order, with each offset (0, -0.5, -1, -1.5 px) or
-///   with exchanged columns, then a factor and an offset of the displacements, and a shift and a factor of the
-///   positions.
+/// - Of the format's own interpretations (VectorFile::also), the first is used unless another of them fits
+///   significantly better.
+/// - Alternatives to these are all combinations of y axis, v sign and frame order, with each offset (0, -0.5, -1, -1.5
+///   px) or with exchanged columns. Further alternatives are a factor or offset of the displacements and a shift or
+///   factor of the positions.
 /// - An alternative is a probable mistake if it fits significantly better and reduces the rms by 10 % (an offset of the
 ///   positions by 5 %; factors, shift, and offset of the displacements by 50 %).
 /// - A factor of the displacements is considered above 1.05, or below 0.9 times the slope of the truth averaged over
@@ -98,16 +102,17 @@ DetectedConventions detect_conventions(VectorFile const& file, std::function<Vec
 std::string describe_difference(VectorConventions const& reading, VectorConventions const& own);
 
 /// Returns a penalty for the differences between an interpretation and the format's own; the likeliest interpretation
-/// has the smallest. Axes and signs count 1 each, exchanged columns 1.2, the offset 0.3, the mirror 0.2; y and v that
-/// are both reversed count 1.1 together.
+/// has the smallest. Axes and signs count 1 each, exchanged columns 1.2, the offset 0.3, the mirror 0.2; a reversal of
+/// both y and v counts 1.1 in total.
 double convention_penalty(VectorConventions const& reading, VectorConventions const& own);
 
-/// Returns "x - 0.5 px fits better: rms 0.0021 instead of 0.0050 px", or that it does not; empty for offset 0.
+/// Returns a message on whether the offset of the conventions improves the fit, such as "x - 0.5 px fits better: rms
+/// 0.0021 instead of 0.0050 px"; empty for offset 0.
 std::string offset_report(DetectedConventions const& detected);
 
 /// Returns twice the log-likelihood ratio of fit a to fit b, for errors with the given spreads: 9 corresponds to three
-/// standard deviations. At an overlap of one half, each vector shares its image with three others, so a quarter of the
-/// components is taken as independent. Spreads below 1e-4 px count as equal.
+/// standard deviations. At an overlap of one half, each vector shares its image with three other vectors, so that a
+/// quarter of the components is assumed to be independent. Spreads below 1e-4 px count as equal.
 double log_likelihood_statistic(ConventionFit const& a, ConventionFit const& b);
 
 }  // namespace gladstone

@@ -32,7 +32,7 @@ DisplacementField sample(DisplacementField const& field, std::size_t most) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   if (!all.empty()) {
     auto const [low, high] = std::minmax_element(all.begin(), all.end(), by_y);
-    take(*low, VectorStatus::masked);  // used only for the extent
+    take(*low, VectorStatus::masked);  // added as masked vectors, which determine the extent of the grid only
     take(*high, VectorStatus::masked);
   }
   return few;
@@ -58,7 +58,8 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
   DisplacementField const ours = apply_conventions(field, conventions, image_rows);
   double differences = 0.0, signal = 0.0, product = 0.0;
   std::size_t count = 0, known = 0;
-  std::array<std::vector<double>, 2> errors, truths;  // by component: one of them may have a bias
+  // one list per component, since only one of the components may be biased
+  std::array<std::vector<double>, 2> errors, truths;
   for (std::size_t i = 0; i < ours.size(); ++i) {
     if (!ours.counts(i)) continue;
     Vec2d const t = truth(ours.position_px[i]);
@@ -92,7 +93,8 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
   if (known > 0) fit.signal_px = std::sqrt(signal / static_cast<double>(known));
   if (signal > 0.0) {
     fit.slope = product / signal;
-    // At an overlap of one half, every vector shares its image with three others.
+    // At an overlap of one half, every vector shares its image with three other vectors, which doubles the standard
+    // error.
     fit.slope_error = 2.0 * fit.rms_px / std::sqrt(signal);
   }
   return fit;

@@ -11,7 +11,8 @@ namespace gladstone::detail {
 /// Displacement at a position in our conventions [px]; NaN outside of the field of view.
 using Truth = std::function<Vec2d(Vec2d)>;
 
-/// Compares axes and signs. The mirror (grid or image) and the offset affect only the position.
+/// Returns true if the axes, the signs and the order of the frames agree. The centre about which y is mirrored and the
+/// offset are ignored, because they affect only the positions.
 bool same_axes(VectorConventions const& a, VectorConventions const& b);
 
 /// Selects at most `most` counted vectors at equal index intervals. The rows with the extreme y are included as masked
@@ -20,21 +21,21 @@ DisplacementField sample(DisplacementField const& field, std::size_t most);
 
 /// Returns a standard deviation about zero that outliers change little: the scale at which normally distributed errors
 /// have the same likelihood as `errors` under Cauchy's distribution with their median magnitude. For normally
-/// distributed errors it is their standard deviation. Magnitudes below 1e-4 px count as that.
+/// distributed errors this scale is their standard deviation. Magnitudes below 1e-4 px count as 1e-4 px.
 double robust_spread(std::vector<double> const& errors);
 
-/// Computes the agreement with clamped differences.
+/// Computes the agreement of vectors with the truth, with an upper limit of the differences.
 /// @param most  upper limit of a difference [px], and the difference assumed at positions without truth, so that
-///              conventions cannot win by moving vectors out of view
+///              conventions are not preferred for moving vectors out of view
 ConventionFit fit_within(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
                          int image_rows, double most);
 
-/// Returns the limit of ConventionFit::rms_px, which bounds the influence of outliers but preserves misfits of large
-/// signals.
+/// Returns the upper limit of the differences in ConventionFit::rms_px. It limits the influence of outliers, but is
+/// large enough for the differences that wrong conventions cause.
 double largest_difference(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
                           int image_rows);
 
-/// Returns the smallest convention_penalty relative to any of the format's own conventions.
+/// Returns the smallest convention_penalty() of an interpretation relative to any of the format's own conventions.
 double convention_penalty(VectorConventions const& reading, std::vector<VectorConventions> const& own);
 
 }  // namespace gladstone::detail

@@ -16,7 +16,7 @@ using Exchange = VectorConventions::Exchange;
 using Mirror = VectorConventions::Mirror;
 using Verdict = DetectedConventions::Verdict;
 
-/// Returns a probable cause if no conventions fit.
+/// Returns the probable cause of vectors that no conventions fit.
 std::string likely_cause(DisplacementField const& field, ConventionFit const& best) {
   if (detail::is_zero(field)) return "all displacements are 0; the vectors were probably not computed";
   if (std::abs(best.slope) < 0.1)
@@ -52,7 +52,8 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
     return !same_axes(other.conventions, fit.conventions);
   });
   if (rival != detected.tried.end()) {
-    report += fmt::format("; the best other reading is {}: {:.3g} px", describe(rival->conventions), rival->rms_px);
+    report +=
+        fmt::format("; the best other interpretation is {}: {:.3g} px", describe(rival->conventions), rival->rms_px);
   }
   report += ')';
   if (std::string const offset = offset_report(detected); !offset.empty()) report += "; " + offset;
@@ -78,7 +79,8 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
   }
   if (detected.ambiguous && detected.verdict != Verdict::cannot_be_told && detected.verdict != Verdict::mistaken)
     report +=
-        "; another reading fits as well (this displacement does not distinguish them), and the format's own is used";
+        "; another interpretation fits as well (this displacement does not distinguish them), and the format's own is "
+        "used";
   return report;
 }
 

@@ -6,7 +6,7 @@
 
 namespace gladstone::detail {
 
-/// Returns the tried interpretations and the probable cause if no convention fits.
+/// Returns the report for vectors that no convention fits: the tried interpretations and the probable cause.
 std::string misfit_report(VectorFile const& file, DetectedConventions const& detected);
 
 /// Returns one line about the conventions in use, their fit, and the best other interpretation.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/base/vec.h"
+#include "render/base/warning.h"
 
 namespace gladstone {
 
@@ -21,7 +22,7 @@ enum class VectorReason : int {
   no_signal = 4,     ///< invalid: no signal in the window
   not_replaced = 5,  ///< invalid: failed a validation test; replacement is off, or too few neighbours are valid
   beyond_limit = 6,  ///< invalid: no peak within the search range or below the maximum displacement
-  uncorrelated = 7,  ///< invalid: no better than the correlation of unrelated windows (decorrelation test)
+  uncorrelated = 7,  ///< invalid: the correlation is no better than that of unrelated windows (decorrelation test)
   outside = 8,       ///< invalid: the local displacement moves half of the window or more out of a frame
 };
 
@@ -29,8 +30,9 @@ enum class VectorReason : int {
 /// vectors.h5.
 enum class FailedTest : std::uint8_t {
   none = 0,
-  median = 1,        ///< normalised median test of its pass's increment (at the grid's rim also of the displacement)
-  displacement = 2,  ///< median test of the total displacement, and lower correlation than the neighbours
+  /// Normalised median test of the increment of the last pass (at the grid's rim also of the displacement).
+  median = 1,
+  displacement = 2,  ///< median test of the total displacement, combined with a lower correlation than the neighbours
   peak_ratio = 3,    ///< peak ratio below its threshold
   correlation = 4,   ///< correlation coefficient below its threshold
 };
@@ -39,29 +41,31 @@ enum class FailedTest : std::uint8_t {
 enum class Ambiguity : std::uint8_t {
   none = 0,
   here = 1,     ///< secondary peak of nearly the same height in this pass
-  earlier = 2,  ///< the same in an earlier pass with larger windows, whose result was the predictor of this pass
+  earlier = 2,  ///< secondary peak of nearly the same height in an earlier pass with larger windows, from which the
+                ///< predictor of this pass was computed
 };
 
-/// Displacements at scattered or gridded points, for ground truth, theory and measurement alike. Positions and
+/// Displacements at scattered points or on a grid; used for ground truth, theory and measurements. Positions and
 /// displacements are in px, column x to the right, row y downwards. The displacement is that from frame A to frame B
 /// (in BOS: from the reference image to the measurement image).
 struct DisplacementField {
   std::vector<Vec2d> position_px;
   std::vector<Vec2d> displacement_px;
   std::vector<Vec2d> sigma_px;       ///< standard uncertainty [px]; NaN or empty: not estimated
-  std::vector<double> peak_ratio;    ///< highest over second correlation peak [1]; empty: not measured
-  std::vector<VectorStatus> status;  ///< empty: all valid
+  std::vector<double> peak_ratio;    ///< ratio of the highest to the second correlation peak [1]; empty: not measured
+  std::vector<VectorStatus> status;  ///< validity of each vector; empty: all valid
   std::vector<Vec2d> raw_px;         ///< displacement before replacement [px]; NaN or empty: none
   std::vector<double> correlation;   ///< correlation coefficient of the peak at raw_px [1]; NaN or empty: none
-  std::vector<VectorReason> reason;  ///< empty: not recorded
-  std::vector<FailedTest> failed;    ///< empty: not recorded
-  std::vector<Ambiguity> ambiguous;  ///< empty: not recorded
-  int columns = 0;                   ///< columns of the interrogation grid, stored row by row; 0: scattered points
+  std::vector<VectorReason> reason;  ///< origin or reason of each vector; empty: not recorded
+  std::vector<FailedTest> failed;    ///< validation test that each vector failed; empty: not recorded
+  std::vector<Ambiguity> ambiguous;  ///< ambiguity of each vector; empty: not recorded
+  /// Number of columns of the grid, whose vectors are stored row by row; 0: scattered points.
+  int columns = 0;
   int rows = 0;
-  std::vector<std::string> warnings;  ///< warnings about the measurement as a whole
+  Warnings warnings;  ///< warnings about the measurement as a whole
   /// Result of the decorrelation test: "correlates", "does not correlate" or "not judged: REASON"; empty: not tested.
   std::string verdict;
-  /// Method that estimated sigma_px: a value of correlate.uncertainty, or "dot_fit" of tracked dots; empty: unknown.
+  /// Method that estimated sigma_px: a value of correlate.uncertainty, or "dot_fit" for tracked dots; empty: unknown.
   std::string uncertainty_method;
   /// Key that selected the method, e.g. `correlate.uncertainty = "auto"`, see record_uncertainty(); empty: unknown.
   std::string uncertainty_key;

@@ -23,7 +23,7 @@ std::vector<std::size_t> shape_of(GridTable const& table) {
   return shape;
 }
 
-/// Returns the table with the columns x_mm, y_mm (and z_mm) of the nodes in front.
+/// Returns the table with additional first columns x_mm, y_mm (and z_mm), the positions of the nodes.
 VectorTable with_positions(GridTable const& grid) {
   std::vector<std::size_t> const shape = shape_of(grid);
   VectorTable table;

@@ -11,14 +11,16 @@ namespace gladstone {
 /// Coordinates of a uniform axis of a grid.
 struct TableAxis {
   std::string name;              ///< "x", "y" or "z"
-  std::vector<double> place_mm;  ///< ascending
+  std::vector<double> place_mm;  ///< coordinates in ascending order [mm]
   std::string description;
 };
 
 /// Scalar quantities at the nodes of a grid in a plane or a volume, such as a density and its uncertainty.
 struct GridTable {
-  std::vector<TableAxis> axes;                ///< the slowest first: y, x or z, y, x
-  std::vector<detail::VectorColumn> columns;  ///< one value for each node, x fastest; NaN: unknown
+  /// Axes in the order y, x or z, y, x: the index of the last axis varies fastest.
+  std::vector<TableAxis> axes;
+  /// Quantities, with one value per node; the x index varies fastest; NaN: unknown.
+  std::vector<detail::VectorColumn> columns;
 
   std::size_t nodes() const;
 };

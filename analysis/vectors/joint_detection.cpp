@@ -13,7 +13,7 @@ namespace {
 using detail::same_axes;
 using Verdict = DetectedConventions::Verdict;
 
-/// A sample of one file's vectors, and how well the conventions in use fit it.
+/// Sample of one file's vectors, and the fit of the conventions in use to this sample.
 struct Sample {
   VectorsWithTruth const* of;
   DisplacementField few;
@@ -31,7 +31,7 @@ struct Candidate {
   double sum = 0.0;
   std::size_t decisive = 0;  ///< index of the file with the strongest evidence
   double strongest = 0.0;
-  std::size_t files = 0, followed = 0;  ///< number of files, and of those that follow the truth without the mistake
+  std::size_t files = 0, followed = 0;  ///< number of files, and number of files that follow the truth after correction
 
   void add(ConventionFit const& undone, ConventionFit const& as_read, std::size_t file) {
     ++files;
@@ -46,7 +46,9 @@ struct Candidate {
   }
   bool corrects() const { return !(mistake.correction == VectorCorrection{}); }
   bool is_found() const {
-    if (2 * followed <= files) return false;  // files with different mistakes, for example
+    // Reject the correction if at most half of the files follow the truth after it, for example if each file has
+    // another mistake.
+    if (2 * followed <= files) return false;
     return sum > (corrects() ? 25.0 : 16.0) &&
            mistake.corrected_fit.spread_px < (corrects() ? 0.5 : 0.9) * mistake.as_read.spread_px;
   }
@@ -100,7 +102,7 @@ std::vector<Candidate> other_axes(std::vector<DetectedConventions> const& detect
   return all;
 }
 
-/// Returns the mistakes found in single files that are more than other axes or signs, with their evidence in all files.
+/// Returns the mistakes of single files that involve more than wrong axes and signs, with their evidence in all files.
 std::vector<Candidate> corrections(std::vector<DetectedConventions> const& detected, std::vector<Sample> const& samples,
                                    VectorConventions const& chosen) {
   std::vector<Candidate> all;
@@ -123,8 +125,8 @@ double candidate_penalty(Candidate const& candidate, std::vector<VectorConventio
          detail::convention_penalty(candidate.mistake.corrected_fit.conventions, own);
 }
 
-/// Returns true if two candidates state the same mistake: the same axes and signs without a correction, or both with
-/// one.
+/// Returns true if two candidates are the same mistake: they have the same axes and signs, and neither or both have a
+/// correction.
 bool alike(Candidate const& a, Candidate const& b) {
   return a.mistake.correction == b.mistake.correction
              ? same_axes(a.mistake.corrected_fit.conventions, b.mistake.corrected_fit.conventions)
@@ -162,7 +164,7 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
   std::vector<Sample> samples;
   for (VectorsWithTruth const& one : files) {
     result.detected.push_back(detect_conventions(one.file, one.truth, one.image_rows));
-    DisplacementField few = detail::sample(one.file.field, 4000);  // the sample of detect_conventions()
+    DisplacementField few = detail::sample(one.file.field, 4000);  // same number of vectors as in detect_conventions()
     double const most = detail::largest_difference(few, own.front(), one.truth, one.image_rows);
     samples.push_back({&one, std::move(few), most, {}});
     samples.back().as_read = samples.back().fit(own.front());
@@ -183,7 +185,7 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
         std::any_of(all.begin(), all.end(), [](Candidate const& one) { return !one.corrects() && one.sum > -9.0; });
     return result;
   }
-  // Estimator errors in a flow of similar appearance can account for a tenth of the evidence.
+  // If the flow is similar in both interpretations, estimator errors can account for a tenth of the evidence.
   double const most = best->sum, close = std::max(9.0, 0.1 * most);
   for (auto one = all.begin(); one != all.end(); ++one) {
     if (most - one->sum <= close && candidate_penalty(*one, own) < candidate_penalty(*best, own)) best = one;

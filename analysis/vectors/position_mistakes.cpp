@@ -17,12 +17,12 @@ VectorCorrection shift_by(Vec2d shift_px) {
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double vague_px = 2.0;  ///< a component with a greater uncertainty is not determined [px]
+constexpr double vague_px = 2.0;  ///< uncertainty above which a component of the shift counts as not determined [px]
 
 /// Shift of the positions, and its uncertainty.
 struct FittedShift {
   Vec2d shift_px{};
-  Vec2d uncertainty_px{};  ///< three standard errors
+  Vec2d uncertainty_px{};  ///< uncertainty of the shift, three standard errors [px]
 };
 
 /// Refines a shift by least squares: Newton's method on the mean square difference from the truth, whose derivatives
@@ -44,14 +44,14 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
     double const xy =
         (mean_square(h, h) - mean_square(h, -h) - mean_square(-h, h) + mean_square(-h, -h)) / (4.0 * h * h);
     double const gx = (right - left) / (2.0 * h), gy = (below - above) / (2.0 * h), determinant = xx * yy - xy * xy;
-    // covariance 2 s^2 / n times the inverse Hessian, with a quarter of the components as independent
+    // The covariance is 2 s^2 / n times the inverse Hessian; a quarter of the components is assumed to be independent.
     double const variance = 8.0 * middle / components;
     auto const three_errors = [&](double curvature) { return 3.0 * std::sqrt(variance / std::max(curvature, 0.0)); };
     FittedShift next;
     if (xx > 0.0 && determinant > 0.0 && three_errors(determinant / std::max(xx, yy)) < vague_px) {
       next.shift_px = fitted.shift_px - Vec2d{(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant};
       next.uncertainty_px = {three_errors(determinant / yy), three_errors(determinant / xx)};
-    } else if (xx > yy) {  // as in a shear, whose displacement is the same all along its layers
+    } else if (xx > yy) {  // only x is determined, for example in a shear flow whose displacement does not vary along y
       next.shift_px = fitted.shift_px - Vec2d{gx / xx, 0.0};
       next.uncertainty_px = {three_errors(xx), infinity};
     } else {
@@ -72,8 +72,8 @@ std::string describe_shift(FittedShift const& fitted) {
   };
   auto const along = [&](char axis, double value, double uncertainty, char other) {
     return fmt::format(
-        "positions are shifted by {:.4g} px in {}, to within {:.2g} px (in {} this displacement does not determine a "
-        "shift)",
+        "positions are shifted by {:.4g} px in {}, to within {:.2g} px (this displacement does not determine a shift "
+        "in {})",
         rounded(value, uncertainty), axis, std::max(digit(uncertainty), uncertainty), other);
   };
   auto const [shift, uncertainty] = fitted;
@@ -112,7 +112,7 @@ ProbableMistake find_shift(Search const& search) {
     if (log_likelihood_statistic(search.fit(fewer, shift_by(best)), search.fit(fewer, shift_by(other))) < 9.0)
       best = other;
   }
-  constexpr double counting = 2.0;  // conventions of pixel counting differ by less
+  constexpr double counting = 2.0;  // larger than the shifts between conventions of pixel counting [px]
   if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
   FittedShift const fitted = refine_shift(search, {best, {finest, finest}});
   ConventionFit const corrected_fit = search.fit(search.few, shift_by(fitted.shift_px));
@@ -136,7 +136,7 @@ ProbableMistake find_place_factor(Search const& search) {
       best = factor;
     }
   };
-  look_around(1.0, 1.4, 0.01);  // from a quarter to four times
+  look_around(1.0, 1.4, 0.01);  // searches for factors from one quarter to four
   look_around(best, 0.01, 0.001);
   if (std::abs(best - 1.0) < 0.01) return {};
   ConventionFit const corrected_fit = search.fit(search.few, scaled(best));

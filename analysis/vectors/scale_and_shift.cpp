@@ -14,7 +14,7 @@ namespace gladstone::detail {
 namespace {
 
 /// Returns the factor between a component and its truth by least absolute deviations: the median of their ratios,
-/// weighted by |truth|. It is robust to up to half of the vectors being wrong.
+/// weighted by |truth|. The median remains correct if up to half of the vectors are wrong.
 double median_factor(DisplacementField const& ours, Truth const& truth, double Vec2d::*component) {
   std::vector<std::pair<double, double>> ratios;
   double sum = 0.0;
@@ -47,11 +47,11 @@ double component_signal(DisplacementField const& ours, Truth const& truth, doubl
   return count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0.0;
 }
 
-/// Searches for displacements that are a multiple of the true ones.
+/// Searches for displacements that are a multiple of the true displacements.
 ProbableMistake find_factor(Search const& search) {
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
   Vec2d const share = share_in_windows(ours, search.truth, 64.0);
-  constexpr double least_followed = 0.05;  // minimum slope of windows that still measure a displacement
+  constexpr double least_followed = 0.05;  // minimum slope for which windows still follow the displacement
   auto const determines = [&](double Vec2d::*component) {
     return component_signal(ours, search.truth, component) >
            std::max(min_decidable_signal_px, 0.2 * search.own.signal_px);
@@ -64,7 +64,7 @@ ProbableMistake find_factor(Search const& search) {
       factor.*component = found;
   }
   if (factor == Vec2d{1.0, 1.0}) return {};
-  // Use one factor for both components if the two agree.
+  // Use one factor for both components if their factors agree.
   bool const both = std::abs(factor.x - factor.y) < 0.1 * std::max(factor.x, factor.y);
   if (both) factor.x = factor.y = 0.5 * (factor.x + factor.y);
   // Apply the factors to the columns of the file, which may be exchanged.
@@ -86,9 +86,9 @@ ProbableMistake find_factor(Search const& search) {
   return {text, both ? describe(scaled) : std::string(), corrected_fit, search.own, correction};
 }
 
-/// Searches for a constant that all displacements have in addition.
+/// Searches for a constant that is added to all displacements.
 ProbableMistake find_offset(Search const& search) {
-  if (is_zero(search.few)) return {};  // in a uniform displacement an offset would explain it
+  if (is_zero(search.few)) return {};  // an offset alone would explain zero vectors in a uniform displacement
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
   Vec2d offset{};
   for (auto const component : {&Vec2d::x, &Vec2d::y}) {
@@ -102,7 +102,7 @@ ProbableMistake find_offset(Search const& search) {
     std::nth_element(differences.begin(), middle, differences.end());
     offset.*component = *middle;
   }
-  constexpr double least = 0.2;  // greater than the bias by peak locking [px]
+  constexpr double least = 0.2;  // minimum offset that is reported; larger than the bias by peak locking [px]
   if (!(std::max(std::abs(offset.x), std::abs(offset.y)) > least)) return {};
   auto const rounded = [](double value) { return 0.0 + std::round(1000.0 * value) / 1000.0; };
   std::string const text =
@@ -121,7 +121,7 @@ ProbableMistake find_offset(Search const& search) {
 }  // namespace
 
 Vec2d share_in_windows(DisplacementField const& all, Truth const& truth, double window_px) {
-  constexpr int nodes = 8;  // along one side of a window
+  constexpr int nodes = 8;  // number of nodes along one side of a window
   DisplacementField const ours = sample(all, 500);
   Vec2d product{}, square{};
   for (std::size_t i = 0; i < ours.size(); ++i) {

@@ -12,8 +12,9 @@ DisplacementField corrected(DisplacementField field, VectorCorrection const& cor
 /// Returns true if no displacement of a field differs from 0.
 bool is_zero(DisplacementField const& field);
 
-/// Returns the regression slope, by component and at most 1, of the truth averaged over windows on the truth at the
-/// point, from a sample of at most 500 vectors.
+/// Returns the fraction of the displacement that windows of the given size measure: the regression slope of the truth
+/// averaged over windows on the truth at their centres, for each component, at most 1. A sample of at most 500 vectors
+/// is used.
 Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth, double window_px);
 
 /// Common input of the searches for a correction.
@@ -37,8 +38,8 @@ struct Search {
 };
 
 /// Searches for a factor or offset of the displacements and a shift or factor of the positions with the conventions in
-/// use, and returns the one that fits best. If `any_reading` and none fits, also searches for a factor with all other
-/// conventions.
+/// use, and returns the one that fits best. If none fits and `any_reading` is true, also searches for a factor in
+/// combination with all other conventions.
 ProbableMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
                                     std::vector<VectorConventions> const& own, bool any_reading);
 

@@ -11,9 +11,9 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;  // memory of the autocorrelation
+constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;  // maximum memory of the autocorrelation [bytes]
 constexpr std::size_t blocks_per_chunk = 4;
-constexpr std::size_t fields_per_update = 8;  // fields whose products are added at once
+constexpr std::size_t fields_per_update = 8;  // number of fields whose products are added at once
 
 bool is_measured(DisplacementField const& field, std::size_t i) {
   VectorStatus const status = field.status.empty() ? VectorStatus::valid : field.status[i];
@@ -31,7 +31,7 @@ double standard_error(double variance, double samples) {
   return samples > 0 ? std::sqrt(std::max(0.0, variance) / samples) : not_a_number;
 }
 
-/// Writes a quantity of all points, and on a grid the same in rows and columns.
+/// Writes a quantity of all points; on a grid, also writes it as a matrix of rows and columns.
 template <class Value>
 void write_vector_dataset(Hdf5Writer& file, Hdf5Axes& axes, std::string const& name, std::span<Value const> values,
                           SequenceMoments const& moments, std::string const& units, std::string const& description) {

@@ -28,27 +28,29 @@ struct SequenceMoments {
   std::vector<Vec2d> mean_error_px;          ///< standard error of the mean [px]
   std::vector<Vec2d> rms_px;                 ///< standard deviation, the square root of the normal stresses [px]
   std::vector<Vec2d> rms_error_px;           ///< standard error of rms_px [px]
-  std::vector<ReynoldsStress> stress_px2;    ///< [px^2]
+  std::vector<ReynoldsStress> stress_px2;    ///< Reynolds stresses [px^2]
   std::vector<ReynoldsStress> stress_error;  ///< standard errors of stress_px2 [px^2]
   std::vector<Vec2d> independent;            ///< effective number of independent samples of u and v [1]
   /// Number of points whose autocorrelation is positive at every recorded lag, so that `independent` is too large.
   std::size_t unresolved = 0;
 };
 
-/// Accumulates the statistics of a sequence of displacement fields on one grid. Memory is bounded: sums of the first
-/// four powers and products of (u, v), and for the autocorrelation the last `lags` fields and the products with them.
+/// Accumulates the statistics of a sequence of displacement fields on one grid. The required memory does not depend on
+/// the number of fields: it contains sums of the products of u and v up to fourth order and, for the autocorrelation,
+/// the last `lags` fields and the sums of their products.
 ///
 /// Includes vectors that were measured: valid vectors, and vectors replaced by a secondary peak of the same window.
 /// Vectors replaced by the median of their neighbours are interpolated and would reduce the stresses.
 ///
 /// With the autocorrelation rho_k at lag k and n vectors, the effective number of independent samples is
 /// N = n/(1 + 2 sum_k (1 - k/n) rho_k); the sum ends before the first rho_k <= 0 (Smith, Neal, Feero & Richards,
-/// Meas. Sci. Technol. 29 (2018) 125302). Standard errors with the central moments m_ij of u and v:
+/// Meas. Sci. Technol. 29 (2018) 125302). Standard errors with the central moments m_ij = mean(u^i v^j):
 /// - mean: sqrt(m20/(N - 1)),
 /// - stresses: sqrt((m40 - m20^2)/N_uu), sqrt((m22 - m11^2)/N_uv) (Benedict & Gould, Exp. Fluids 22 (1996) 129), where
 ///   N_uu contains rho_k^2 and N_uv the product of both autocorrelations (Gaussian processes),
-/// - rms: that of the normal stress divided by twice the rms.
-/// Sums refer to the deviation from the first vector of each point, so that a large mean costs no accuracy. The result
+/// - rms: standard error of the normal stress divided by twice the rms.
+/// Sums are computed of the deviations from the first vector of each point, so that a large mean does not reduce the
+/// accuracy. The result
 /// does not depend on the number of threads.
 class SequenceStatistics {
  public:
@@ -64,7 +66,8 @@ class SequenceStatistics {
   SequenceMoments moments();
 
  private:
-  /// Sums over the vectors of a point: of a^i b^j, with the deviations a and b from its first vector.
+  /// Sums of a^i b^j over the vectors of a point, where a and b are the deviations of u and v from the first vector of
+  /// the point.
   struct Powers {
     double n = 0, a = 0, b = 0, aa = 0, ab = 0, bb = 0, aaa = 0, aab = 0, abb = 0, bbb = 0, aaaa = 0, aabb = 0,
            bbbb = 0;
@@ -84,21 +87,22 @@ class SequenceStatistics {
 
   /// Central moments of a point, sums divided by n [px, px^2, px^4].
   struct CentralMoments {
-    Vec2d mean;  ///< of the deviations
+    Vec2d mean;  ///< mean of the deviations
     double m20 = 0, m11 = 0, m02 = 0, m40 = 0, m22 = 0, m04 = 0;
   };
   /// Effective number of independent samples for the means and for the stresses.
   struct IndependentSamples {
     Vec2d mean;
     double uu = 0, vv = 0, uv = 0;
-    bool unresolved = false;  ///< an autocorrelation is positive at every recorded lag
+    bool unresolved = false;  ///< true if an autocorrelation is positive at every recorded lag
   };
 
   void start(DisplacementField const& field);
   void add_block(DisplacementField const& field, std::size_t block);
-  /// Counts a field, and adds the products of the latest fields after several of them.
+  /// Counts a field, and adds the products of the latest fields once several fields have been added.
   void finish_sample();
-  /// Adds the products of the latest fields with those before them. Several fields at once access the sums only once.
+  /// Adds the products of the latest fields with those before them. Processing several fields at once reads and writes
+  /// the sums only once.
   void add_products();
   CentralMoments central_moments(std::size_t point) const;
   IndependentSamples count_independent(std::size_t point, CentralMoments const& m) const;
@@ -110,8 +114,8 @@ class SequenceStatistics {
   std::vector<Vec2d> position_px_, first_;
   int columns_ = 0, rows_ = 0;
   std::vector<Powers> powers_;
-  std::vector<Products> products_;   ///< block, lag - 1
-  std::vector<Deviations> history_;  ///< block, sample modulo slots
+  std::vector<Products> products_;   ///< products for each block of points and each lag: [block][lag - 1]
+  std::vector<Deviations> history_;  ///< latest fields of each block of points: [block][sample % slots_]
 };
 
 /// Writes statistics.h5. @throws OutputError

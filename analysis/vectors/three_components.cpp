@@ -17,7 +17,7 @@ class NodeReader {
   explicit NodeReader(std::string const& path) : path_(path), file_(path) {
     if (file_.attribute("filetype") != stereo_filetype)
       throw DataError(ErrorCode::wrong_format, path,
-                      "is not a file of three components; give the file that gladstone stereo writes");
+                      "contains no displacements with three components; give a file that gladstone stereo has written");
   }
 
   std::vector<double> read(std::string const& dataset, std::size_t count) const {

@@ -14,16 +14,16 @@ namespace gladstone {
 /// those of the world, lengths are in mm; NaN: not determined.
 struct ThreeComponentField {
   std::vector<double> x_mm, y_mm;  ///< positions of the columns and of the rows, which are stored from the lowest y
-  std::vector<double> z_mm;        ///< of every node
+  std::vector<double> z_mm;        ///< z of every node [mm]
   std::vector<Vec3d> displacement_mm, sigma_mm;
-  std::vector<double> residual_px;     ///< root of the sum of squares of the residuals of the four equations
+  std::vector<double> residual_px;     ///< root of the sum of squares of the four equations' residuals [px]
   std::vector<double> residual_ratio;  ///< residual divided by its standard uncertainty [1]
   std::vector<VectorStatus> status;    ///< valid or invalid
 
   std::size_t size() const { return displacement_mm.size(); }
 };
 
-/// Returns whether a file is one of gladstone stereo; false if it is not HDF5 by its name.
+/// Returns whether gladstone stereo has written a file; always false if the name does not have an extension of HDF5.
 bool is_three_component_file(std::string const& path);
 
 /// Reads a file of gladstone stereo.
@@ -33,9 +33,9 @@ ThreeComponentField read_three_components(std::string const& path);
 /// Returns the extensions of the formats that write_three_components() writes.
 std::vector<std::string> three_component_extensions();
 
-/// Writes three components in the format of the extension: table (.csv), netCDF-4 in the schema of PIVPy with `w`
-/// (.nc), MATLAB level 5 (.mat), Tecplot ASCII (.dat), VTK image (.vti) or VTK points (.vtp); contents in
-/// docs/file-formats.md.
+/// Writes displacements with three components in the format that the extension selects: table (.csv), netCDF-4 in the
+/// schema of PIVPy with `w` (.nc), MATLAB level 5 (.mat), Tecplot ASCII (.dat), VTK image (.vti) or VTK points (.vtp);
+/// contents in docs/file-formats.md.
 /// @throws OutputError; DataError if a source has changed since it was read;
 ///         std::invalid_argument for another file extension
 void write_three_components(std::string const& path, ThreeComponentField const& field, FileOrigin const& origin);

@@ -16,12 +16,12 @@ namespace gladstone {
 void write_track_vectors(std::string const& path, DisplacementField const& field, std::span<std::int64_t const> tracks,
                          FileOrigin const& origin);
 
-/// Vectors of write_track_vectors().
+/// Contents of a file of write_track_vectors().
 struct TrackVectors {
   DisplacementField field;
-  std::vector<std::int64_t> tracks;  ///< empty: no tracks
+  std::vector<std::int64_t> tracks;  ///< number of the track of each vector; empty: the file contains no tracks
 };
-/// @throws DataError
+/// Reads a file of write_track_vectors(). @throws DataError if it is no such file
 TrackVectors read_track_vectors(std::string const& path);
 
 }  // namespace gladstone

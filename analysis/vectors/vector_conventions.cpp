@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "analysis/vectors/vector_file.h"
@@ -24,24 +23,24 @@ constexpr std::array<std::pair<Exchange, std::string_view>, 4> exchange_words{
      {Exchange::components, "components-exchanged"},
      {Exchange::axes, "axes-exchanged"}}};
 
-/// Parses the number in NAME=NUMBER. @throws std::invalid_argument
+/// Parses the number in NAME=NUMBER. @throws DataError
 double number_of(std::string_view word) {
   std::size_t const equals = word.find('=');
   std::string_view const text = word.substr(equals + 1);
   double number = 0.0;
   auto const [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc{} && stop == text.data() + text.size() && std::isfinite(number)) return number;
-  throw std::invalid_argument(fmt::format("conventions: {} is not {}=NUMBER, such as {}={}", word,
-                                          word.substr(0, equals), word.substr(0, equals),
-                                          word.starts_with("offset") ? "-0.5" : "0.0614"));
+  throw DataError(ErrorCode::arguments, "--conventions",
+                  fmt::format("{} is not {}=NUMBER, such as {}={}", word, word.substr(0, equals),
+                              word.substr(0, equals), word.starts_with("offset") ? "-0.5" : "0.0614"));
 }
 
-/// Parses a positive number. @throws std::invalid_argument
+/// Parses a positive number. @throws DataError
 double scale_of(std::string_view word) {
   double const scale = number_of(word);
   if (scale > 0.0) return scale;
-  throw std::invalid_argument(
-      fmt::format("conventions: {} is not above 0; give the size of a pixel in the unit of the file", word));
+  throw DataError(ErrorCode::arguments, "--conventions",
+                  fmt::format("{} is not above 0; give the size of a pixel in the unit of the file", word));
 }
 
 }  // namespace
@@ -77,10 +76,12 @@ VectorConventions parse_conventions(std::string_view text, VectorConventions fro
     } else if (word.starts_with("px/frame=")) {
       conventions.px_per_frame = scale_of(word);
     } else {
-      throw std::invalid_argument(fmt::format(
-          "conventions: unknown word \"{}\"; use y-down, y-up, y-up-image, v-down, v-up, frames-exchanged, "
-          "axes-exchanged, places-exchanged, components-exchanged, offset=NUMBER, px=NUMBER, px/frame=NUMBER",
-          word));
+      throw DataError(
+          ErrorCode::arguments, "--conventions",
+          fmt::format(
+              "unknown word \"{}\"; use y-down, y-up, y-up-image, v-down, v-up, frames-exchanged, "
+              "axes-exchanged, places-exchanged, components-exchanged, offset=NUMBER, px=NUMBER, px/frame=NUMBER",
+              word));
     }
   }
   return conventions;
@@ -128,7 +129,7 @@ VectorFile convert_to_pixels(VectorFile file, std::string const& path) {
   bool const places = !file.place_unit.empty() && !file.conventions.px;
   bool const displacements = !file.displacement_unit.empty() && !file.conventions.px_per_frame;
   if (places || displacements) {
-    std::string const what = (places ? "places in " + file.place_unit : std::string()) +
+    std::string const what = (places ? "positions in " + file.place_unit : std::string()) +
                              (places && displacements ? " and " : "") +
                              (displacements ? "displacements in " + file.displacement_unit : std::string());
     throw DataError(ErrorCode::undetermined, path,

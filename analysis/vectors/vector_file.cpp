@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
@@ -14,8 +13,8 @@
 namespace gladstone {
 namespace {
 
-/// Reader of a text format. Readers are tried in order; the last accepts every table. A new format requires one more
-/// row.
+/// Reader of a text format. Readers are tried in order; the last one accepts every table. A new format requires one
+/// more row.
 struct TextReader {
   bool (*recognizes)(detail::TextTable const&);
   VectorFile (*read)(detail::TextTable const&);
@@ -158,8 +157,8 @@ bool has_vector_extension(std::string const& path) { return find_writer(path) !=
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
   VectorWriter const* const writer = find_writer(path);
   if (!writer)
-    throw std::invalid_argument(fmt::format("{}: vectors are written as {}; use one of these endings", path,
-                                            fmt::join(vector_extensions(), ", ")));
+    throw OutputError(
+        path, fmt::format("vectors are written as {}; use one of these endings", fmt::join(vector_extensions(), ", ")));
   writer->write(path, field, origin);
 }
 

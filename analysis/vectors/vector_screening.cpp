@@ -115,8 +115,7 @@ std::string reason_to_reject_positions(DisplacementField const& screened, Reject
     std::string const where =
         left_out.outside_image > 0 ? " (" + Extent{left_out.low_px, left_out.high_px}.text() + ")" : "";
     return fmt::format(
-        "none of the {} vectors lies in {}{}: {}; positions must be in px from the centre of the first pixel: export "
-        "them "
+        "all {} vectors lie outside {}{}: {}; positions must be in px from the centre of the first pixel: export them "
         "so, or give the offset to be added with --conventions offset=NUMBER",
         left_out.all(), image, where, left_out.text());
   }
@@ -142,7 +141,7 @@ std::string reason_to_reject_positions(DisplacementField const& screened, Reject
 }
 
 std::string describe_suspect_positions(DisplacementField const& screened, int image_columns, int image_rows) {
-  constexpr std::size_t fewest = 16;  // minimum number of vectors to judge the extent of a grid
+  constexpr std::size_t fewest = 16;  // minimum number of vectors for which the extent of a grid is judged
   Extent const extent = extent_of(screened);
   Vec2d const size = extent.high - extent.low;
   double const share = size.x * size.y / (static_cast<double>(image_columns) * image_rows);

@@ -16,7 +16,7 @@
 /// on the default stream and checked at launch.
 namespace gladstone::cuda {
 
-/// Highest finite grey level of an image pair and negative of the lowest, as ordered_key().
+/// Highest finite grey level of an image pair and negative of the lowest, both as keys of ordered_key().
 struct LevelKeys {
   unsigned long long highest;
   unsigned long long minus_lowest;
@@ -36,7 +36,7 @@ struct DevicePair {
   int rows;
 };
 
-/// Converts images to this form.
+/// Converts images to a DevicePair.
 /// @param keys  scratch
 /// @param contrast  output: scaled range of the grey levels
 void prepare_pair(DeviceImage const& reference, DeviceImage const& flow, LevelKeys* keys, float* contrast,
@@ -57,8 +57,8 @@ struct WindowJob {
   InterrogationGrid grid;
   AxisWeightsView x;
   AxisWeightsView y;
-  int side;                ///< side of the pixels with non-zero weight [px]
-  int margin;              ///< support pixels without weight on either side: (x.size - side)/2
+  int side;                ///< side of the square of pixels with non-zero weight [px]
+  int margin;              ///< zero-weight pixels on either side of the square: (x.size - side)/2
   int size;                ///< length of the transforms
   Complex const* roots;    ///< unit_roots(size)
   float const* particles;  ///< spectrum that weights the phases of rpc along one axis; null: scc
@@ -82,7 +82,7 @@ struct WindowPeaks {
 
 /// Returns whether a specialised kernel exists for the job: scc with supports of 32 and 64 px.
 bool has_own_kernel(WindowJob const& job);
-/// Finds the peaks of all windows with supports of that size. @pre has_own_kernel(job)
+/// Finds the peaks of all windows whose weights extend over 32 px. @pre has_own_kernel(job)
 void correlate_windows_of_32(WindowJob const& job, WindowPeaks* peaks);
 void correlate_windows_of_64(WindowJob const& job, WindowPeaks* peaks);
 

@@ -11,15 +11,15 @@ struct MatchedWindows {
   InterrogationGrid grid;
   AxisWeightsView x;
   AxisWeightsView y;
-  int side;                   ///< side of the pixels with non-zero weight [px]
-  int margin;                 ///< support pixels without weight on either side [px]
+  int side;                   ///< side of the square of pixels with non-zero weight [px]
+  int margin;                 ///< zero-weight pixels on either side of the square [px]
   GridVector const* vectors;  ///< uncertainties are estimated for valid vectors only
   double amplification;       ///< amplification_of_passes()
 };
 
-/// Returns the memory of a block for a window of that side [floats].
+/// Returns the memory that a block needs for a window of this side [floats].
 std::size_t statistics_values(int side);
-/// Returns whether this exceeds the shared memory available to a block.
+/// Returns whether the memory for a window of this side exceeds the shared memory available to a block.
 bool statistics_need_scratch(int side);
 
 /// Estimates the standard uncertainty of every vector.

@@ -5,11 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/lane_correlation.h"
 #include "analysis/correlation/methods/robust_phase.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/steep_refinement.h"
+#include "analysis/correlation/subpixel_fit.h"
 #include "analysis/uncertainty/pass_amplification.h"
+#include "analysis/uncertainty/uncertainty.h"
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/correlation/correlation_statistics.h"
 #include "cuda/device/device_array.h"
@@ -53,8 +56,8 @@ struct WindowScratch {
   DeviceArray<float> memory;
   int slots = 0;
 
-  /// Allocates memory for up to 264 of `windows`, or for fewer if device memory is short. @param values  floats per
-  /// window
+  /// Allocates memory for `windows` concurrent windows, at most 264, or for fewer if device memory is short.
+  /// @param values  floats per window
   void make(std::size_t values, std::size_t windows) {
     if (values == 0) return;
     for (auto wanted = std::min<std::size_t>(windows, 264);; wanted = (wanted + 1) / 2) try {
@@ -87,9 +90,9 @@ class CorrelationPlan {
  public:
   CorrelationPlan(CorrelationSettings const& settings, int columns, int rows)
       : schedule_(settings),
-        phase_only_(settings.method == "rpc"),
-        nine_points_(settings.subpixel == "gauss2d"),
-        with_sigma_(settings.uncertainty == "correlation_statistics"),
+        phase_only_(correlation_method(settings.method).by_phase),
+        nine_points_(subpixel_method(settings.subpixel).nine_points),
+        with_sigma_(settings.estimates_uncertainty() && uncertainty_on_gpu(settings.uncertainty)),
         amplification_(with_sigma_ ? amplification_of_passes(settings) : 1.0),
         columns_(columns),
         rows_(rows) {
@@ -130,8 +133,9 @@ class CorrelationPlan {
 
   bool suits(int columns, int rows) const { return columns == columns_ && rows == rows_; }
 
-  /// Copies both images of a pair to the device. @param staged  pixels of one after the other, in page-locked memory,
-  /// which must remain unchanged until the vectors have been downloaded
+  /// Copies both images of a pair to the device.
+  /// @param staged  pixels of frame A, then those of frame B, in page-locked memory, which must remain unchanged until
+  /// the vectors have been downloaded
   void upload(double const* staged) {
     std::size_t const pixels = static_cast<std::size_t>(columns_) * rows_;
     for (DeviceArray<double>& image : uploaded_) {
@@ -192,7 +196,7 @@ class CorrelationPlan {
     int search_radius_px;
     PredictorView predictor;  ///< computed from the vectors of this pass
     DeviceAxisWeights x, y;
-    int side, size;  ///< side of a window's pixels, length of its transform
+    int side, size;  ///< side of a window [px], length of the transforms
     LinePlan lines;
     DeviceArray<Complex> roots;
     DeviceArray<float> particles;  ///< weights of the phases for rpc
@@ -340,7 +344,7 @@ class CorrelationPlan {
 
   CorrelationSchedule schedule_;
   bool phase_only_, nine_points_;
-  bool with_sigma_;  ///< by correlation statistics, after the last pass
+  bool with_sigma_;  ///< whether sigma is estimated by correlation statistics after the last pass
   double amplification_;
   int columns_;
   int rows_;
@@ -354,7 +358,7 @@ class CorrelationPlan {
   DeviceArray<WindowCorrelation> windows_;
   DeviceArray<WindowPeaks> peaks_;
   DeviceArray<GridVector> vectors_;
-  DeviceArray<char> ambiguous_[2];  ///< flags of a pass and of the previous one
+  DeviceArray<char> ambiguous_[2];  ///< flags of ambiguous vectors of a pass and of the previous one
   DeviceArray<MeasuredVector> measured_;
   DeviceArray<Replacement> list_;
   DeviceArray<int> list_size_{1, purpose};
@@ -368,7 +372,7 @@ class CorrelationPlan {
 struct CudaCorrelator::State {
   explicit State(CorrelationSettings const& wanted) : settings(wanted) {}
 
-  /// Returns the plan for images of that size. @throws DataError, OutOfDeviceMemory
+  /// Returns the plan for images of this size. @throws DataError, OutOfDeviceMemory
   CorrelationPlan& plan_for(int columns, int rows) {
     if (!plan || !plan->suits(columns, rows)) {
       plan.reset();  // release its memory first

@@ -9,9 +9,9 @@ namespace gladstone::cuda {
 
 /// StandardCorrelator on the device: shares the functions per pixel, window and vector, but not the Fourier transforms.
 /// No data are transferred between passes, except for the additional passes where displacement gradients are steep,
-/// which the host plans. Device memory is retained for later pairs of the same size; concurrent calls
-/// are serialised. With uncertainty = "correlation_statistics", the result includes sigma_px as by
-/// estimate_uncertainty(); with other methods sigma_px is empty.
+/// whose predictors the host computes. Device memory is retained for later pairs of the same size; concurrent calls are
+/// serialised. With uncertainty = "correlation_statistics", the result includes sigma_px as by estimate_uncertainty();
+/// with other methods sigma_px is empty.
 class CudaCorrelator final : public Correlator {
  public:
   explicit CudaCorrelator(CorrelationSettings const& settings);

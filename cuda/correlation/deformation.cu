@@ -6,7 +6,7 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = 256;
-constexpr int threads_of_rounds = 512;  // of the kernel with a single block
+constexpr int threads_of_rounds = 512;  // threads per block of the single-block kernel
 
 /// Returns 1 if both images of the original pair are known at a pixel, otherwise 0.
 struct KnownPixels {

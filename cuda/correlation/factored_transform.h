@@ -37,7 +37,8 @@ struct FactoredTransform {
   static constexpr int size = outer * inner;
   static constexpr int threads = threads_of_block;
   static constexpr int groups = threads / size;  ///< number of threads per line
-  static constexpr int pitch = size + 3;         ///< odd; wave numbers kx = 0 and size/2 are moved to two extra columns
+  static constexpr int pitch = size + 3;         ///< row stride; odd, with two extra columns for the wave numbers kx =
+                                                 ///< 0 and size/2
   static constexpr int largest_radius = size / 3;                           ///< largest search radius [px]
   static constexpr int plane_pitch = (2 * largest_radius + 9 + 3) / 4 * 4;  ///< row stride of the plane [floats]
   static_assert(size % 4 == 0 && size >= 32 && threads % size == 0);

@@ -82,7 +82,7 @@ __device__ void filter_run(Sample const& sample, float const* taps, int reach, G
   }
 }
 
-constexpr int most_taps = 48;  // maximum of bspline_taps()
+constexpr int most_taps = 48;  // maximum number of taps of bspline_taps()
 
 __device__ void share_taps(float const* taps, int count, float (&shared)[most_taps]) {
   unsigned const thread = threadIdx.y * blockDim.x + threadIdx.x;
@@ -95,7 +95,7 @@ constexpr int row_part = threads * row_run;  // part of a row filtered by a bloc
 /// Filters rows, continued by reflection at their ends. Unknown pixels count as 0.
 __global__ void __launch_bounds__(threads)
     filter_rows(DevicePair pair, float const* taps, int tap_count, GreyPair* out) {
-  // Skip every seventeenth place: samples four apart are then in different banks.
+  // Skip every seventeenth position: samples four apart are then in different banks.
   constexpr int most = row_part + 2 * most_taps;
   __shared__ GreyPair samples[most + most / 16];
   __shared__ float shared_taps[most_taps];

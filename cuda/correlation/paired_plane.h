@@ -9,7 +9,7 @@
 /// Correlation plane in the layout of a transform of two columns at a time, and its maxima.
 namespace gladstone::cuda {
 
-/// Columns 2 i and 2 i + 1 are interleaved; pairs of columns are `pitch` apart.
+/// Correlation plane in which columns 2 i and 2 i + 1 are interleaved; pairs of columns are `pitch` apart.
 template <int pitch>
 struct PairedPlane {
   Complex const* centre;  ///< shifts (0, 0) and (1, 0)
@@ -27,7 +27,7 @@ struct BlockRow {
     around_first = std::fmax(left, higher);
     around_second = std::fmax(higher, right);
   }
-  /// is_maximum() for the first or second value, given the rows above and below. At most one of them is a maximum.
+  /// Return true if the first or second value is a maximum, given the rows above and below. At most one of them is.
   GLADSTONE_HD bool first_is_maximum(BlockRow const& above, BlockRow const& below) const {
     return static_cast<int>(first >= second) & static_cast<int>(first > left) &
            static_cast<int>(first > above.around_first) & static_cast<int>(first >= below.around_first);

@@ -6,7 +6,7 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = 128;
-constexpr int threads_of_rounds = 512;  // of the kernels with a single block
+constexpr int threads_of_rounds = 512;  // threads per block of the single-block kernels
 
 __global__ void make_vectors(WindowCorrelation const* windows, InterrogationGrid grid, PassPredictor predictor,
                              double limit_px, AmbiguousPlaces before, GridVector* vectors, char* ambiguous) {

@@ -13,7 +13,7 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int most_warps = 32;
-constexpr int most_searching = 10;  // a warp merges their results, three peaks each
+constexpr int most_searching = 10;  // maximum number of searching warps: one warp merges all results
 
 /// Shared memory of a block, in front of the window.
 template <int size>

@@ -110,7 +110,7 @@ __device__ void for_each_pixel(WindowJob const& job, int column, int row, Visit 
 __device__ void form_cross_spectrum(Complex* window, int size, int pitch, float const* particles) {
   for (int k = static_cast<int>(threadIdx.x); k < (size / 2 + 1) * size; k += static_cast<int>(blockDim.x)) {
     int const x = k % size, y = k / size, mirror_x = (size - x) % size, mirror_y = (size - y) % size;
-    if (y == mirror_y && x > mirror_x) continue;  // in rows that are their own mirrors
+    if (y == mirror_y && x > mirror_x) continue;  // skip the second half of a row that is its own mirror
     Complex& here = window[static_cast<long long>(y) * pitch + x];
     Complex& there = window[static_cast<long long>(mirror_y) * pitch + mirror_x];
     Vec2<float> const product = cross_spectrum(here.re, here.im, there.re, there.im);

@@ -179,8 +179,8 @@ __global__ void __launch_bounds__(Transform::threads, 4)
   extern __shared__ __align__(16) unsigned char memory[];
   BlockMemory& own = *reinterpret_cast<BlockMemory*>(memory);
   // Some steps involve only a few warps. Rotate the warp numbers by 5/4 of the block number, so that these warps are
-  // distributed over the four schedulers of a multiprocessor, also if it runs blocks whose numbers differ by a multiple
-  // of four.
+  // distributed over the four schedulers of a multiprocessor. This also holds if a multiprocessor runs blocks whose
+  // numbers differ by a multiple of four.
   unsigned const turned = (threadIdx.x + (40u * blockIdx.x & 224u)) % Transform::threads;
   int const thread = static_cast<int>(turned), lane = static_cast<int>(turned % 32u),
             warp = static_cast<int>(turned / 32u);
@@ -192,7 +192,7 @@ __global__ void __launch_bounds__(Transform::threads, 4)
   {
     ThreadPixels pixels;
     Complex mean{};
-    for (bool known = false;; known = true) {  // repeated if some pixels are unknown
+    for (bool known = false;; known = true) {  // a second run follows if some pixels are unknown
       pixels.read(job, column, row, warp, lane);
       if (known) {
         pixels.fill_unknown(mean);

@@ -3,7 +3,7 @@
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/correlation/peak_search.cuh"
 
-/// Output of a window's peaks by the block that computed its plane.
+/// Output of the peaks of a window, by the thread block that computed its correlation plane.
 namespace gladstone::cuda {
 
 /// Writes the result of a window that was not correlated.

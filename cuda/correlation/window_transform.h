@@ -45,7 +45,7 @@ struct WindowTransform {
     return roots;
   }
 
-  int thread;  ///< values derived from it are recomputed, which is cheaper than registers
+  int thread;  ///< index of the thread; values derived from it are recomputed, which is cheaper than registers
   Complex* memory;
   Roots const* roots;
 
@@ -54,7 +54,7 @@ struct WindowTransform {
   GLADSTONE_HD int lane() const { return thread & 31; }
   GLADSTONE_HD int warp() const { return thread >> 5; }
   GLADSTONE_HD int along() const { return thread & 7; }  ///< index of the thread among the eight that share a row
-  /// Offset of the row of this thread's wave number, and of the mirrored row.
+  /// Offset of the row of this thread's wave number, and of the row of the mirrored wave number.
   GLADSTONE_HD int row() const { return (thread >> 3) * pitch; }
   GLADSTONE_HD int mirror() const {
     int const line = thread >> 3;  // equals 4 p + q, see the layout above
@@ -81,7 +81,8 @@ struct WindowTransform {
     }
     for (Complex(&column)[8] : z) {
       small_transform<8, -1, 1>(column);
-      if (warp() == 0) {  // so that the sums in row_first_pass() give 2 (A_0 + i A_32) and 2 (B_0 + i B_32)
+      if (warp() == 0) {  // combine the columns so that the sums in row_first_pass() give 2 (A_0 + i A_32) and 2 (B_0 +
+                          // i B_32)
         Complex const zero = column[0], nyquist = column[4];
         column[0] = {zero.re + zero.im, nyquist.re + nyquist.im};
         column[4] = {zero.re - zero.im, nyquist.im - nyquist.re};

@@ -10,10 +10,10 @@ namespace gladstone::cuda {
 /// Computes light[i] = white[i] - light[i].
 void take_from_white(double const* white, double* light, std::size_t count);
 
-/// Finds the maximum of `count` pixels as an ordered_key(), and stores it in `key` if it exceeds the value there.
+/// Finds the maximum of `count` pixels as an ordered_key(), and stores it in `key` if it exceeds the stored value.
 /// @param key  must be initialised to zero
 void find_brightest(double const* light, std::size_t count, unsigned long long* key);
-/// Converts such a key to its value, on the host.
+/// Converts a key of find_brightest() to the value of the brightest pixel, on the host.
 double brightness_from_key(unsigned long long key);
 
 /// Applies PixelDetector::record() to every pixel.

@@ -4,6 +4,7 @@
 #include "cuda/device/device_image.h"
 #include "render/base/frame_pair.h"
 #include "render/base/image.h"
+#include "render/base/image_samples.h"
 #include "render/scene/ray_hit.h"
 
 namespace gladstone::cuda {
@@ -12,17 +13,22 @@ namespace gladstone::cuda {
 class DeviceFrames final : public StoredFrames {
  public:
   DeviceFrames(int columns, int rows);
+  /// Copies images of equal size that another library stores on this device; waits until they are copied.
+  DeviceFrames(ImageSamples const& reference, ImageSamples const& flow);
 
   DeviceImage image(Frame frame) const { return {levels(frame), columns_, rows_}; }
   double* levels(Frame frame) { return levels_[static_cast<int>(frame)].data(); }
   double const* levels(Frame frame) const { return levels_[static_cast<int>(frame)].data(); }
   Image<double> const& reference() const override { return on_host(Frame::reference); }
   Image<double> const& flow() const override { return on_host(Frame::flow); }
+  /// Returns how many pixels of a copied image are NaN or infinite.
+  std::size_t not_finite(Frame frame) const { return not_finite_[static_cast<int>(frame)]; }
 
  private:
   Image<double> const& on_host(Frame frame) const;
 
   int columns_, rows_;
+  std::size_t not_finite_[frame_count] = {};
   DeviceArray<double> levels_[frame_count];
   mutable Image<double> on_host_[frame_count];
 };

@@ -14,7 +14,7 @@ class DeviceLight final : public RenderedLight {
   DeviceLight(int columns, int rows);
 
   double* light(Frame frame) { return light_[static_cast<int>(frame)].data(); }
-  /// Replaces the light by that of a white target minus it, for dark dots on a white target.
+  /// Replaces the light L by W - L, with the light W of a white target, for dark dots on a white target.
   void take_from(Image<double> const& white);
   /// Copies the light to the host. @param staging  page-locked buffer; all cores copy one frame from it while the other
   /// is being transferred

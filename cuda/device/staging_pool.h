@@ -51,14 +51,14 @@ class StagingPool {
   void release(std::unique_ptr<PinnedBuffer> buffer) {
     {
       std::lock_guard const lock(mutex_);
-      idle_.push_back(std::move(buffer));  // within the capacity, so that it does not throw
+      idle_.push_back(std::move(buffer));  // does not throw, since the capacity suffices
     }
     available_.release();
   }
 
   std::counting_semaphore<most_buffers> available_{most_buffers};
   std::mutex mutex_;
-  std::vector<std::unique_ptr<PinnedBuffer>> idle_;  ///< the most recently used one last
+  std::vector<std::unique_ptr<PinnedBuffer>> idle_;  ///< idle buffers, the most recently used one last
 };
 
 }  // namespace gladstone::cuda

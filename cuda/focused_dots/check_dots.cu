@@ -19,7 +19,8 @@ struct CheckingWarp : Warp {
       : Warp{0, 1}, scramblings(of), shared(room), statuses(counts) {}
   __device__ void clear() { sums = {}; }
   __device__ TableCheck& check(int) { return sums; }
-  /// Sums over the lanes of each scrambling (equal lane numbers modulo their count), in a fixed order.
+  /// Sums over the lanes of each scrambling (lanes whose numbers are equal modulo the number of scramblings), in a
+  /// fixed order.
   __device__ TableCheck const* of_scramblings() const {
     TableCheck sum = sums;
     sum.each_number([groups = scramblings](double& number, int) {

@@ -66,7 +66,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotP
                       std::shared_ptr<DeviceLight>* light_out) {
   Scene const& scene = bench.scene();
   std::uint64_t const dots = sources.centre.size();
-  TracingPass pass(scene, sources);
+  TracingPass pass(scene, bench.plan(), sources);
   OwnedDotModel const host(bench, sources, table, light_out, MomentImagesBy::device);
   MirroredModel on_device(host.model);
   DotModel const& model = on_device.model();
@@ -142,9 +142,9 @@ CudaRenderer::CudaRenderer() : uploads_(std::make_unique<Uploads>()) {
 }
 CudaRenderer::~CudaRenderer() = default;
 
-Rendering CudaRenderer::render(Scene const& scene, DotPattern const& sources, RenderImages images,
-                               RenderTheory theory) {
-  std::optional<FocusedDots> const bench = focused_dots(scene);
+Rendering CudaRenderer::render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources,
+                               RenderImages images, RenderTheory theory) {
+  std::optional<FocusedDots> const bench = focused_dots(scene, plan);
   GLADSTONE_EXPECTS(bench);
   if (!uploads_->medium.serves(scene)) {
     uploads_->deflections.forget();
@@ -153,10 +153,10 @@ Rendering CudaRenderer::render(Scene const& scene, DotPattern const& sources, Re
   MirroredMedium const& medium = uploads_->medium.medium();
   std::shared_ptr<DeviceLight> light;
   std::uint64_t const dots = std::max<std::uint64_t>(1, sources.centre.size());
-  double const steps = static_cast<double>(scene.rays_per_dot) * std::max(1.0, scene.steps_across());
+  double const steps = static_cast<double>(plan.rays) * std::max(1.0, scene.steps_across(plan.step));
   std::uint64_t const most =
       std::min(most_cone_bytes / sizeof(DotCone), static_cast<std::size_t>(max_steps_per_launch / steps));
-  Rendering rendering = render_within_table(scene, [&](double largest_aim_distance) {
+  Rendering rendering = render_within_table(scene, plan, [&](double largest_aim_distance) {
     DeflectionTable const table = uploads_->deflections.table(*bench, sources, largest_aim_distance, medium.view());
     // Retry with smaller batches if device memory is short; results are bitwise the same.
     for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
@@ -166,7 +166,7 @@ Rendering CudaRenderer::render(Scene const& scene, DotPattern const& sources, Re
       }
   });
   rendering.table = uploads_->deflections.state();
-  rendering.pupil_margin = scene.pupil_margin;
+  rendering.pupil_margin = plan.pupil_margin;
   if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(render_white_light(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::in_place) rendering.in_place = std::move(light);

@@ -16,7 +16,8 @@ class CudaRenderer final : public Renderer {
 
   std::string device() const override { return "cuda"; }
   /// Like Renderer::render(). @throws DeviceError in addition, with the sizes if device memory is exhausted
-  Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  Rendering render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, RenderImages images,
+                   RenderTheory theory) override;
 
  private:
   struct Uploads;  ///< data reused between successive scenes

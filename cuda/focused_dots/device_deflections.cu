@@ -44,7 +44,7 @@ DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionTableLay
         auto* const kernel = deflect_kernel<std::remove_cvref_t<decltype(held)>>;
         constexpr std::size_t fours_a_block = threads / 4;
         std::size_t const all = (static_cast<std::size_t>(plan.table.fours()) + fours_a_block - 1) / fours_a_block;
-        double const steps = threads * std::max(1.0, dots.scene().steps_across());
+        double const steps = threads * std::max(1.0, dots.scene().steps_across(dots.plan().step));
         std::size_t const most = std::max<std::size_t>(1, static_cast<std::size_t>(max_steps_per_launch / steps));
         for (std::size_t first = 0; first < all; first += most) {
           throw_if_interrupted();

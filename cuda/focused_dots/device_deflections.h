@@ -14,7 +14,7 @@ class DeviceDeflections {
   /// @throws OutOfDeviceMemory with the size of the whole table
   DeviceDeflections(FocusedDots const& dots, DeflectionTableLayout const& plan, DeviceMedium const& medium);
 
-  /// Returns the table; exists() is false if the plan does not require one.
+  /// Returns the table; exists() is false if the layout has none.
   DeflectionTable const& table() const { return table_; }
 
  private:

@@ -15,8 +15,9 @@ namespace gladstone::cuda {
 /// Ray statistics over all dots of a rendering.
 struct RayTally {
   unsigned long long statuses[frame_count][ray_status_count];
-  unsigned long long
-      largest_aim_distance;  ///< bit pattern of a non-negative double, which has the same order as the numbers [m]
+  unsigned long long largest_aim_distance;  ///< largest distance of an aim point from the axis [m], as the bit pattern
+                                            ///< of a double: for numbers that are not negative, the patterns have the
+                                            ///< same order as the numbers, so that an integer maximum suffices
 };
 
 /// Aims at the dots and traces their check rays, one warp per dot. @param found  output: errors and ray counts

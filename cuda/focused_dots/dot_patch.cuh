@@ -48,7 +48,7 @@ struct Patch {
       }
     }
   }
-  /// Adds one pixel of a square.
+  /// Adds one pixel of a footprint.
   __device__ void add_run(Footprint const& square, int pixel, double const (&units)[1]) {
     int const column = square.column - left + pixel % square.width, row = square.row - top + pixel / square.width;
     double const share = whole_units(units[0]);

@@ -8,7 +8,7 @@ namespace gladstone::cuda {
 namespace {
 
 using Squares = SquareSums<4>;
-constexpr int room = 512;  // capacity of the numbers of the points that a warp processes together
+constexpr int room = 512;  // shared memory of a warp for numbers of the points that it processes together [doubles]
 
 /// Accumulates the light of a source disc. @tparam orders  1: without moments
 template <int orders>
@@ -46,9 +46,10 @@ __global__ void __launch_bounds__(dot_threads, 6)
   }
 }
 
-/// Accumulates the light of wide cones. Their work differs much, so each block takes the next dot when it is done.
+/// Accumulates the light of wide cones. Each block takes the next dot when it has finished one, since the duration
+/// differs much between dots.
 /// @param next  number of dots that have been taken, in device memory
-/// @param room, order  buffers of `points_a_block` points for each block
+/// @param room, order  buffers of `points_a_block` elements for each block
 __global__ void __launch_bounds__(dot_threads, 3)
     expose_wide_kernel(DotModel const __grid_constant__ model, std::uint64_t const count, DotCone const* const cones,
                        DeviceImages const images, int const side, unsigned long long* const next, ConeLight* const room,
@@ -88,7 +89,7 @@ struct Stamp {
 };
 
 /// Returns the largest stamp that fits into shared memory, and permits launches with it.
-/// @param beside  additional shared memory after the stamp [bytes]
+/// @param beside  shared memory that the kernel needs in addition to the stamp [bytes]
 template <class Kernel>
 Stamp largest_stamp(Kernel* kernel, DotModel const& model, std::size_t beside) {
   int const side = patch_side(model, most_shared_bytes(kernel) - beside);

@@ -4,7 +4,8 @@
 
 namespace gladstone::cuda {
 
-/// Draws the images of particles on the GPU; the light remains there. It is bitwise equal to that of the CPU.
+/// Draws the images of particles on the GPU, where the light remains. The light is bitwise equal to that computed on
+/// the CPU.
 class CudaImageDrawer final : public ImageDrawer {
  public:
   std::string device() const override { return "cuda"; }

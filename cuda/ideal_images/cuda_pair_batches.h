@@ -39,10 +39,10 @@ class CudaPairBatches final : public PairBatchRenderer {
   };
 
   std::vector<DeviceArray<float>> velocities_;  ///< coefficients of velocity files
-  std::vector<Scattering> scattering_;          ///< of models with Mie scattering
+  std::vector<Scattering> scattering_;          ///< scattering tables of models with Mie scattering
   DeviceArray<PairModel> models_;
   std::size_t model_count_;
-  GaussianSpot<double> spot_;  ///< with the footprint of all images
+  GaussianSpot<double> spot_;  ///< PSF whose footprint is used for all images
   int columns_, rows_;
   std::size_t seeded_ = 0;  ///< largest number of particles of a model
   std::uint32_t capacity_;

@@ -11,7 +11,7 @@ constexpr int blocks = 6;  // per multiprocessor
 constexpr int warp = 32;
 constexpr int chunk = warp;  // particle images that a block holds at a time
 constexpr int rows_per_thread = tile_size * tile_size / threads;
-constexpr int margin = rows_per_thread - 1;  // rows of a thread before or after an image
+constexpr int margin = rows_per_thread - 1;  // number of rows by which a thread's rows extend beyond an image
 constexpr unsigned int most_blocks = 65535;  // maximum extent of a grid along y
 
 __global__ void list_kernel(DeviceParticleImages const images, GaussianSpot<double> const shape,
@@ -23,7 +23,7 @@ __global__ void list_kernel(DeviceParticleImages const images, GaussianSpot<doub
   }
 }
 
-/// Sorts the list of a tile by the rank of every entry: a list has about a hundred.
+/// Sorts the list of a tile by the rank of every entry; a list has about a hundred entries.
 __global__ void order_kernel(TileLists const lists) {
   std::size_t const tile = blockIdx.x;
   std::uint32_t const count = min(lists.count[tile], lists.capacity);
@@ -49,13 +49,13 @@ struct Chunk {
   double share[2][chunk][most_edges - 1 + 2 * margin];  ///< light of columns and rows, between zeros
   // Two copies, since the images of the next chunk are loaded while those of a chunk are drawn.
   int start[2][2][chunk];                     ///< [chunk % 2] first pixel whose share is computed, relative to the tile
-  std::uint32_t reaching[2][threads / warp];  ///< [chunk % 2] bits of the images that reach the rows of a warp
+  std::uint32_t reaching[2][threads / warp];  ///< [chunk % 2] bit mask of the images that overlap the rows of a warp
 };
 
-/// Pixels and edges of the images of a frame along one axis, as far as they matter to a tile.
+/// Number of pixels and edges along one axis that are computed for each image of a frame.
 struct Extent {
   int width;  ///< pixels of a footprint
-  int edges;  ///< edges that are computed: those of a narrow footprint, or of the part of a wide one in the tile
+  int edges;  ///< number of computed edges: all edges of a narrow footprint; of a wide one, those in the tile
 };
 
 /// Loads the images `list`[0] to `list`[count - 1], by one warp.
@@ -94,14 +94,14 @@ __device__ void load_images(Chunk<most_edges>& held, DeviceParticleImages const&
 /// Converts a number of at least 0, exactly. A conversion instruction takes eight cycles of a warp, this sum two.
 __device__ double to_double(int number) { return __hiloint2double(0x43300000, number) - 0x1p52; }
 
-/// One of the elements of an item, in the order of the items and then of the elements.
+/// Position in a list of items with several elements each: elements of item 0, then of item 1, and so on.
 struct Place {
   int item, element;
 };
 
 __device__ Place place_of(int index, int elements) { return {index / elements, index % elements}; }
 
-/// Returns the place that is `step` further.
+/// Returns the position that is `step` further.
 __device__ Place next_place(Place const& from, Place const& step, int elements) {
   Place const next{from.item + step.item, from.element + step.element};
   return next.element < elements ? next : Place{next.item + 1, next.element - elements};

@@ -8,8 +8,8 @@
 namespace gladstone::cuda {
 namespace {
 
-constexpr int threads = 128;                  // three blocks per multiprocessor, whose registers the flows fill
-constexpr std::size_t pixels_per_thread = 8;  // for which a thread loads the detector once
+constexpr int threads = 128;                  // three blocks then fill the registers of a multiprocessor
+constexpr std::size_t pixels_per_thread = 8;  // so that a thread loads the detector once for several pixels
 constexpr unsigned int most_rows = 65535;     // maximum extent of a grid along y
 
 __device__ double value_of(unsigned long long bits) { return __longlong_as_double(static_cast<long long>(bits)); }

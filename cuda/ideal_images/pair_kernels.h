@@ -8,7 +8,8 @@ namespace gladstone::cuda {
 /// Pairs to render and their models, in device memory.
 struct PairsOnDevice {
   PairModel const* models = nullptr;
-  std::size_t model_stride = 0;  ///< 0: all pairs have the first model; 1: pair i has model i
+  /// step of the model index from pair to pair; 0: all pairs have the first model, 1: pair i has model i
+  std::size_t model_stride = 0;
   PairSeeds const* seeds = nullptr;
   std::size_t pairs = 0;
 
@@ -17,8 +18,8 @@ struct PairsOnDevice {
 
 /// Computes the images of all particles, with light in photons, and lists them in their tiles.
 /// @param images  [pair][frame][particle]; images without light behind the last particle of a model
-/// @param count   number of particles for which there is memory
-/// @param unit    photons of the brightest image of each pair, as bits of a double; must be zero
+/// @param count   number of particles for which memory is allocated
+/// @param unit    photons of the brightest image of each pair, as bits of a double; must be initialised to zero
 void make_particle_images(PairsOnDevice const& pairs, std::size_t count, ParticleImage* images,
                           unsigned long long* unit, TileLists const& lists);
 

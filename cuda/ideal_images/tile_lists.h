@@ -18,7 +18,7 @@ struct TileLists {
   std::uint32_t capacity = 0;        ///< maximum length of a list
   std::uint32_t* count = nullptr;    ///< [frame][tile] number of images, which may exceed the capacity
   std::uint32_t* entries = nullptr;  ///< [frame][tile][capacity] indices, first in any order, then ascending
-  std::uint32_t* ordered = nullptr;  ///< the same in ascending order
+  std::uint32_t* ordered = nullptr;  ///< entries in ascending order
   std::uint32_t* longest = nullptr;  ///< length of the longest list that exceeded the capacity; 0: none
 
   GLADSTONE_HD std::size_t tiles() const { return static_cast<std::size_t>(across) * static_cast<std::size_t>(down); }
@@ -47,7 +47,7 @@ class TileListMemory {
 
 /// Particle images of several frames in device memory.
 struct DeviceParticleImages {
-  ParticleImage const* images = nullptr;  ///< [frame][count]
+  ParticleImage const* images = nullptr;  ///< particle images, [frame][count]
   std::size_t count = 0;                  ///< number of images of a frame
   std::size_t frames = 0;
   /// Photons per unit of light of each pair of frames, as bits of a double; null: the light is in these units already.

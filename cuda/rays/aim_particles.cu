@@ -16,7 +16,7 @@ __device__ __noinline__ bool fill_straight(StopView const& stop, TracingOptions<
 /// Aims at the stop for one particle at one pulse.
 /// @param placed  whether `origin` is already set
 /// @param origin  set if `placed` is false
-/// @param step  raised to the first ladder step of this pulse, if that is higher
+/// @param step  step of RaysLadder, which sets the number of rays; raised to the step that this pulse requires
 template <class Medium>
 __device__ void aim_pulse(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,
                           Medium const& medium, std::uint64_t i, int pulse, bool placed, PulseAim& aim, Vec2d& origin,

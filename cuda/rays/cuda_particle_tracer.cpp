@@ -24,12 +24,13 @@ constexpr std::size_t most_batch_bytes = std::size_t{256} << 20, most_of_batch =
 /// Particles at both pulses, in host memory.
 using HostPulses = ParticleSources<double, AnyScattering>[frame_count];
 
-/// Traces a batch of particles on the device. The medium is also needed on the host, which aims those particles that
-/// the device cannot aim by filling the stop.
+/// Traces a batch of particles on the device. The medium is also needed on the host, which computes the aims of
+/// particles whose rays the device cannot restrict to the stop.
 template <class Medium>
 class BatchPass {
  public:
-  /// Starts aiming the particles on the device. @param launches  launches of the batch's particles, one per ladder step
+  /// Starts aiming the particles on the device. @param launches  launches of the batch's particles, one per number of
+  /// rays
   BatchPass(ParticleLaunches const& host, LaunchesOnDevice const& on_device, std::vector<ParticlesLaunch> launches,
             HostPulses const& pulses, Medium const& medium, DeviceMedium const& mirrored, ParticleBatch& batch,
             double across_medium, unsigned long long* ends)
@@ -89,7 +90,7 @@ class BatchPass {
  private:
   unsigned int counted(std::size_t step) const { return counts_[step]; }
 
-  /// Lists, by ladder step, the aims of chosen particles that fill the stop.
+  /// Lists, by number of rays, the aims of the chosen particles whose rays fill the stop.
   void list(int const* at) {
     list_particles(on_device_.ladder(), batch_.aims().data(), at, batch_.steps(), batch_.count(),
                    batch_.listed(launches_.size()));
@@ -102,7 +103,8 @@ class BatchPass {
             counted(step), sign);
     }
   }
-  /// Traces `count` aims of one ladder step. @param listed  indices of the aims, in device memory
+  /// Traces `count` aims with the number of rays of a step of RaysLadder. @param listed  indices of the aims, in device
+  /// memory
   void trace(AimState state, std::size_t step, std::uint32_t const* listed, std::size_t count, double sign) {
     ParticlesLaunch launch = launches_[step];
     launch.sign = sign;
@@ -168,7 +170,7 @@ class BatchPass {
     trace_wider(wide_, steps.data());
   }
 
-  /// Traces aims at clipped rays, by the ladder steps of their particles.
+  /// Traces aims whose rays are clipped at the stop, by the number of rays of their particles.
   void trace_wide(std::vector<std::uint32_t> const& aims, int const* step, double sign) {
     for (std::size_t here = 0; here < launches_.size(); ++here) {
       std::vector<std::uint32_t> some;
@@ -193,7 +195,7 @@ class BatchPass {
         double const moved = std::sqrt(moved2[at]);
         if (!host_.sharp.camera.chief_rays_only() && moved > found_[at].margin) missed.push_back(at);
       }
-      trace_wide(missed, step, -1);  // with the previous aims, which are still on the device
+      trace_wide(missed, step, -1);  // remove the light of the previous aims, which are still on the device
       for (std::uint32_t const at : missed) {
         found_[at].margin = host_.sharp.wider_margin(std::sqrt(moved2[at]));
         place_aim(at, static_cast<std::size_t>(step[at / frame_count]));
@@ -203,8 +205,8 @@ class BatchPass {
     }
   }
 
-  /// Aims at the stop for those pulses of a particle that the device could not aim. @return first ladder step of the
-  /// particle
+  /// Aims at the stop for those pulses of a particle that the device could not aim. @return the particle's first step
+  /// of RaysLadder
   int aim_at_host(std::size_t i, Vec2d& origin, int step) {
     PulseAim* const aims = &aims_[frame_count * i];
     bool placed = aims[0].state == AimState::filled || aims[1].state == AimState::filled;
@@ -226,7 +228,8 @@ class BatchPass {
     }
     return step;
   }
-  /// Sets the aim point and extent of the rays of a wide aim, at a ladder step.
+  /// Sets the aim point and extent of the rays of an aim set by the host, for the number of rays of a step of
+  /// RaysLadder.
   void place_aim(std::size_t at, std::size_t step) {
     PulseAim& aim = aims_[at];
     SourceAim const& found = found_[at];
@@ -257,13 +260,13 @@ class BatchPass {
   unsigned long long* ends_;
   unsigned int counts_[LadderView::max_step_count + 1] = {};
   std::vector<PulseAim> aims_;       ///< aims of the batch, if the host aims some of them
-  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for these
+  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for the aims set by the host
   std::vector<std::uint32_t> wide_;  ///< indices of the aims set by the host
 };
 
 /// Returns the number of particles per batch, limited by memory and by the duration of a launch.
-std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
-  double const at_once = max_steps_per_launch / launches.steps_per_particle(scene.steps_across(), 0);
+std::size_t batch_size(double steps_across, LaunchesOnDevice const& launches) {
+  double const at_once = max_steps_per_launch / launches.steps_per_particle(steps_across, 0);
   return std::clamp<std::size_t>(
       std::min(most_batch_bytes / ParticleBatch::device_bytes_per_particle(launches.ladder().sums_per_pulse),
                static_cast<std::size_t>(std::min(at_once, 1e9))),
@@ -272,12 +275,12 @@ std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
 
 }  // namespace
 
-Rendering trace_particles_on_device(Scene const& scene, Particles const& particles, ParticleLight light,
-                                    RenderImages images, DeviceMedium const& medium, ScatteringCache& kept,
-                                    PinnedBuffer& staging) {
+Rendering trace_particles_on_device(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                                    ParticleLight light, RenderImages images, DeviceMedium const& medium,
+                                    ScatteringCache& kept, PinnedBuffer& staging) {
   std::optional<AiryTable> airy;
   bool const lit = images != RenderImages::no;
-  ParticleLaunches const host(scene, lit ? make_spot(scene, airy) : SpotView{}, images);
+  ParticleLaunches const host(scene, plan, lit ? make_spot(scene, airy) : SpotView{}, images);
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);
@@ -296,7 +299,8 @@ Rendering trace_particles_on_device(Scene const& scene, Particles const& particl
     pulses[pulse] = {particles.place[pulse].data(), particles.photons[pulse].data(), scattering, sheet, pulse};
   }
   Rendering rendering;
-  std::size_t const most = batch_size(scene, launches);
+  double const steps_across = scene.steps_across(plan.step);
+  std::size_t const most = batch_size(steps_across, launches);
   DeviceArray<unsigned long long> ends(frame_count * ray_status_count, "the sums over a batch's rays");
   ends.zero();
   double margin = 0;
@@ -311,7 +315,7 @@ Rendering trace_particles_on_device(Scene const& scene, Particles const& particl
       for (std::size_t step = 0; step < launches.steps(); ++step) {
         batch.fill(of_batch.emplace_back(launches.filled(step)), first, scattering, sheet);
       }
-      BatchPass pass(host, launches, std::move(of_batch), pulses, host_medium, medium, batch, scene.steps_across(),
+      BatchPass pass(host, launches, std::move(of_batch), pulses, host_medium, medium, batch, steps_across,
                      ends.data());
       if (first == 0) rendering = empty_rendering(particles);  // the truth is allocated while the device is working
       pass.finish(staging, rendering.truth);

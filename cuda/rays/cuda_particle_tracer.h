@@ -11,8 +11,8 @@ namespace gladstone::cuda {
 /// scattering table.
 /// @param kept  scattering table on the device, reused between scenes
 /// @param staging  page-locked buffer for transfers
-Rendering trace_particles_on_device(Scene const& scene, Particles const& particles, ParticleLight light,
-                                    RenderImages images, DeviceMedium const& medium, ScatteringCache& kept,
-                                    PinnedBuffer& staging);
+Rendering trace_particles_on_device(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                                    ParticleLight light, RenderImages images, DeviceMedium const& medium,
+                                    ScatteringCache& kept, PinnedBuffer& staging);
 
 }  // namespace gladstone::cuda

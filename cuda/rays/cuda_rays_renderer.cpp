@@ -42,7 +42,7 @@ struct PatternOnDevice {
 /// Data common to all sources with the same number of rays, on the host and on the device.
 class LaunchOnDevice {
  public:
-  /// @param images  null: truth only
+  /// @param images  receive the light; null: only the truth is computed
   LaunchOnDevice(RaysLaunch const& host, PatternOnDevice const& pattern, DeviceMedium const& medium,
                  ImagePairOnDevice* images)
       : host_(host),
@@ -160,7 +160,7 @@ class Batch {
                   {sums_.data(), moved2_.data(), ends_.data()});
   }
 
-  /// Waits for the results. @param sign  sign of its ray counts
+  /// Waits for the results. @param sign  sign with which the batch's ray counts are added
   void finish(std::int64_t sign, StatusCounts& statuses) {
     unsigned long long ends[frame_count * ray_status_count] = {};
     ends_.download(ends, frame_count * ray_status_count);
@@ -199,9 +199,10 @@ class Batch {
 template <class Medium>
 class SceneTracer {
  public:
-  SceneTracer(Scene const& scene, RaysLadder const& ladder, PatternOnDevice const& pattern, Medium const& medium,
+  /// @param steps_across  as Scene::steps_across()
+  SceneTracer(double steps_across, RaysLadder const& ladder, PatternOnDevice const& pattern, Medium const& medium,
               DeviceMedium const& mirrored, ImagePairOnDevice* images, TracingPass& pass)
-      : scene_(scene),
+      : steps_across_(steps_across),
         ladder_(ladder),
         pattern_(pattern),
         medium_(medium),
@@ -237,7 +238,7 @@ class SceneTracer {
   /// time for the first aims.
   std::size_t at_once(std::size_t step) {
     LaunchOnDevice const& launch = on_device(step);
-    double const launches_at_once = max_steps_per_launch / launch.steps_a_source(scene_.steps_across());
+    double const launches_at_once = max_steps_per_launch / launch.steps_a_source(steps_across_);
     return std::clamp<std::size_t>(std::min(most_sum_bytes / (launch.sums_a_source() * sizeof(RaySums)),
                                             static_cast<std::size_t>(std::min(launches_at_once, 1e9))),
                                    1, 1 << 14);
@@ -265,8 +266,8 @@ class SceneTracer {
     return aimed;
   }
 
-  /// Processes the results of a batch of the first ladder step. Sources with a ray deflected beyond their margin, and
-  /// those that need more rays, are removed and traced again.
+  /// Processes the results of a batch with the first number of rays. Sources with a ray deflected beyond their margin,
+  /// and those that need more rays, are removed and traced again.
   void finish(std::unique_ptr<Batch> batch) {
     std::vector<AimedSources> waiting(ladder_.size());
     take_in(*batch, 0, waiting);
@@ -288,7 +289,7 @@ class SceneTracer {
     }
   }
 
-  /// Stores the results of a batch. @param waiting  output: sources to be traced again, by ladder step
+  /// Stores the results of a batch. @param waiting  output: sources to be traced again, by number of rays
   void take_in(Batch& batch, std::size_t step, std::vector<AimedSources>& waiting) {
     batch.finish(1, statuses_);
     RaysLaunch const& launch = ladder_[step];
@@ -316,7 +317,7 @@ class SceneTracer {
     if (!missed.placed.empty()) Batch(here, mirrored_, std::move(missed), -1).finish(-1, statuses_);
   }
 
-  Scene const& scene_;
+  double steps_across_;
   RaysLadder const& ladder_;
   PatternOnDevice const& pattern_;
   Medium const& medium_;
@@ -348,23 +349,25 @@ CudaRaysRenderer::CudaRaysRenderer() : uploads_(std::make_unique<Uploads>()) {
 }
 CudaRaysRenderer::~CudaRaysRenderer() = default;
 
-Rendering CudaRaysRenderer::render(Scene const& scene, DotPattern const& sources, RenderImages images,
-                                   RenderTheory theory) {
+Rendering CudaRaysRenderer::render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources,
+                                   RenderImages images, RenderTheory theory) {
   bool const lit = images != RenderImages::no;
   std::optional<AiryTable> airy;
-  RaysLaunch const launch(scene, lit ? make_spot(scene, airy) : SpotView{}, StopRim::smooth, RayOrder::neighbours);
+  RaysLaunch const launch(scene, plan, lit ? make_spot(scene, airy) : SpotView{}, StopRim::smooth,
+                          RayOrder::neighbours);
   DeviceMedium const mirrored = uploads_->medium_of(scene);
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);
-  RaysLadder const ladder = RaysLadder::of_points(scene, launch, images);
+  RaysLadder const ladder = RaysLadder::of_points(scene, plan, launch, images);
   PatternOnDevice const pattern(sources, -scene.setup.z_d);
-  TracingPass pass(scene, sources);
+  TracingPass pass(scene, plan, sources);
   Rendering& rendering = pass.rendering;
   RayTheory const model(scene, launch, sources.shape, sources.half_size > 0);
   std::visit(
       [&](auto const& medium) {
-        SceneTracer tracer(scene, ladder, pattern, medium, mirrored, frames ? &*frames : nullptr, pass);
+        SceneTracer tracer(scene.steps_across(plan.step), ladder, pattern, medium, mirrored,
+                           frames ? &*frames : nullptr, pass);
         rendering.pupil_margin = tracer.trace(lit ? "tracing rays" : "tracing truth");
         if (theory == RenderTheory::no) return;
         parallel_chunks(rendering.truth.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -384,10 +387,10 @@ Rendering CudaRaysRenderer::render(Scene const& scene, DotPattern const& sources
   return pass.finish();
 }
 
-Rendering CudaRaysRenderer::render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
-                                             RenderImages images) {
-  return trace_particles_on_device(scene, particles, light, images, uploads_->medium_of(scene), uploads_->scattering,
-                                   uploads_->staging);
+Rendering CudaRaysRenderer::render_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                                             ParticleLight light, RenderImages images) {
+  return trace_particles_on_device(scene, plan, particles, light, images, uploads_->medium_of(scene),
+                                   uploads_->scattering, uploads_->staging);
 }
 
 }  // namespace gladstone::cuda

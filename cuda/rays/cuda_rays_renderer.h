@@ -16,10 +16,11 @@ class CudaRaysRenderer final : public Renderer {
 
   std::string device() const override { return "cuda"; }
   /// Like Renderer::render(). @throws DeviceError in addition, with the sizes if device memory is exhausted
-  Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  Rendering render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, RenderImages images,
+                   RenderTheory theory) override;
   /// Like Renderer::render_particles(); particles are aimed on the device. @throws as render()
-  Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
-                             RenderImages images) override;
+  Rendering render_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                             ParticleLight light, RenderImages images) override;
 
  private:
   struct Uploads;  ///< data reused between successive scenes

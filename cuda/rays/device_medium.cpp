@@ -12,7 +12,7 @@ std::size_t coefficient_count(Grid const& grid) {
          static_cast<std::size_t>(Grid::dimensions == 2 ? 1 : grid.nodes[2] + ghosts);
 }
 
-/// @throws OutOfDeviceMemory before anything is allocated
+/// @throws OutOfDeviceMemory  if free memory is insufficient, before anything is allocated
 void require_room(char const* what_for, std::size_t bytes) {
   if (bytes > query_device_memory().free) throw OutOfDeviceMemory(what_for, bytes);
 }

@@ -15,18 +15,18 @@ struct Block {
   __device__ void sync() const { __syncthreads(); }
 };
 
-/// Square of a frame in which a block accumulates the light of a source at spline nodes. The values are integers, so
-/// that the order of summation does not matter; their unit is so small that rounding the shares of all rays changes a
-/// pixel by less than 1e-6 of the source's light.
+/// Square region of a frame in which a block accumulates the light of a source at spline nodes. The values are
+/// integers, so that the order of summation does not matter; their unit is so small that rounding the shares of all
+/// rays changes a pixel by less than 1e-6 of the source's light.
 struct HitWindow {
   int* nodes = nullptr;  ///< light at the nodes: [side][side]; null: accepts no light
   int side, per_px;
   int left, top;  ///< pixel of node (0, 0)
-  double units;   ///< integer units per weight of 1
+  double units;   ///< integer units per unit of ray weight
   double most_weight;
 
-  /// Returns the unit for a number of rays of at most that weight. A node gets at most 4/9 of a ray, so that a sum uses
-  /// less than half of the integer's range.
+  /// Returns the number of integer units per unit of weight, for a number of rays whose weights are at most
+  /// most_weight. A node gets at most 4/9 of a ray, so that a sum uses less than half of the integer's range.
   __device__ static double units_per_weight(double most_weight, std::uint64_t rays) {
     return most_weight > 0 ? 0x1p31 / (most_weight * static_cast<double>(rays)) : 0;
   }
@@ -68,9 +68,9 @@ struct HitWindow {
 struct SharedParts {
   CameraElement<double>* elements;
   RaySums* sums;      ///< sums over the rays of each thread
-  double* rows_seen;  ///< overlaps the memory of `sums`, which are no longer needed at that time
-  double* share;      ///< values of the spline
-  int* nodes;         ///< of all windows; null: no windows
+  double* rows_seen;  ///< buffer of blur_hits(); shares the memory of `sums`, which are no longer needed then
+  double* share;      ///< weights of the spline
+  int* nodes;         ///< nodes of all windows; null: no windows
 
   template <class Launch>
   __device__ SharedParts(unsigned char* memory, Launch const& launch, int threads) {

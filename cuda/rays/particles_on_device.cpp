@@ -20,7 +20,7 @@ void ScatteringCache::upload(std::shared_ptr<MieScattering const> const& mie) {
   tables_ = {};
   coefficients_ = {};
   if (!mie) return;
-  char const* const name = "what the particles scatter";
+  char const* const name = "the scattering table";
   table_of_ = DeviceArray<std::uint32_t>(mie->table_of().data(), mie->table_of().size(), name);
   tables_ = DeviceArray<MieTable>(mie->tables().data(), mie->tables().size(), name);
   coefficients_ = DeviceArray<float>(mie->coefficients().data(), mie->coefficients().size(), name);

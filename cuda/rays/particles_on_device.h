@@ -24,10 +24,10 @@ class ScatteringCache {
   DeviceArray<float> coefficients_;
 };
 
-/// Data common to all particles of a scene, on the device, for each step of the ladder of ray counts.
+/// Data common to all particles of a scene, on the device, for each number of rays of RaysLadder.
 class LaunchesOnDevice {
  public:
-  /// @param images  null: truth only
+  /// @param images  receive the light; null: only the truth is computed
   /// @param light_per_photon  light in the images per photon
   LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium const& medium, ImagePairOnDevice* images,
                    double light_per_photon);
@@ -35,13 +35,13 @@ class LaunchesOnDevice {
   StopView const& stop() const { return stop_; }
   LadderView const& ladder() const { return ladder_; }
   std::size_t steps() const { return launches_.size(); }
-  /// Returns the launch of a ladder step for rays that fill the stop, without particles.
+  /// Returns the launch of a step of RaysLadder for rays that fill the stop, without particles.
   ParticlesLaunch const& filled(std::size_t step) const { return launches_[step]; }
   /// Returns the camera's elements for rays clipped at a stop with a smooth edge.
   CameraElement<double> const* smooth(std::size_t step) const;
 
-  /// Estimates the operations of all rays of a particle at a ladder step, in units of integration steps, to limit the
-  /// duration of a launch.
+  /// Estimates the operations of all rays of a particle at a step of RaysLadder, in units of integration steps, to
+  /// limit the duration of a launch.
   double steps_per_particle(double across_medium, std::size_t step) const;
 
  private:
@@ -99,10 +99,11 @@ class ParticleBatch {
   ParticleSteps steps() { return {steps_.data(), steps_.data() + count_, steps_.data() + 2 * count_, counts_.data()}; }
   /// Arrays step, next and chosen, one after the other.
   DeviceArray<int>& all_steps() { return steps_; }
-  /// Number of listed aims by ladder step; the last element counts the aims that the host computes, or the particles
+  /// Number of listed aims for each number of rays; the last element counts the aims that the host computes, or the
+  /// particles
   /// that need more rays.
   DeviceArray<unsigned int>& counts() { return counts_; }
-  /// Returns the memory for the lists of aims. @param steps  number of ladder steps
+  /// Returns the memory for the lists of aims. @param steps  number of steps of RaysLadder
   std::uint32_t* listed(std::size_t steps) {
     if (listed_.size() == 0) listed_ = DeviceArray<std::uint32_t>(steps * frame_count * count_, "the particles");
     return listed_.data();

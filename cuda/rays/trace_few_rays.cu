@@ -7,8 +7,8 @@ namespace {
 
 constexpr int threads = 128, warps = threads / warp_size;
 
-/// Sums over those lanes of a particle whose rays belong to one scrambling, in an order that depends only on their
-/// number.
+/// Sums over those lanes of a particle whose rays belong to one scrambling, in an order that depends only on the number
+/// of lanes.
 __device__ void sum_lanes(RaySums& sums, int lanes, int scramblings) {
   auto const from = [](auto value, int step) { return __shfl_xor_sync(whole_warp, value, step); };
   for (int step = lanes / 2; step >= scramblings; step /= 2) {

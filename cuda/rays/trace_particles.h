@@ -34,8 +34,8 @@ struct AnyScattering {
 /// State of the aim of one particle at one pulse.
 enum class AimState : int {
   none,     ///< not illuminated, or no ray passes the stop
-  filled,   ///< the rays fill the stop, none is clipped
-  unknown,  ///< to be aimed by the host
+  filled,   ///< all rays fill the stop, and none is clipped there
+  unknown,  ///< aim to be computed by the host
   wide,     ///< the rays cover a disc around the stop and are clipped there
 };
 
@@ -43,35 +43,35 @@ enum class AimState : int {
 struct PulseAim {
   AimState state = AimState::none;
   AimMap seen, ambient;  ///< aim map with and without the medium
-  Vec2d low{}, high{};   ///< approximate extent of the rays on the sensor [px]
+  Vec2d low{}, high{};   ///< approximate bounding box of the ray hits on the sensor [px]
   double spread2 = 0;    ///< variance of the hits, as FilledStop::spread2 [px^2]
 };
 
-/// Ladder of ray counts per particle (RaysLadder), on the device.
+/// Numbers of rays among which that of each particle is chosen (RaysLadder), on the device.
 struct LadderView {
-  static constexpr int max_step_count = 16;  ///< maximum number of steps of the ladder
+  static constexpr int max_step_count = 16;  ///< maximum number of numbers of rays
 
   RequiredRayAccuracy goal;
   double light_per_photon = 0;  ///< light in the images per photon
   int steps = 1;
-  int first_clipped = 0;  ///< first step of particles whose rays are clipped
+  int first_clipped = 0;  ///< first step of particles whose rays are clipped at the stop
   bool ruled = false;     ///< rays that fill the stop follow quadrature rules
   std::uint64_t rays[max_step_count] = {};
   int scrambling_bits[max_step_count] = {};
   std::uint64_t sums_per_pulse = 1;  ///< number of sums of one particle and pulse; maximum over the steps
 
-  /// Like RaysLadder::at_least().
+  /// Returns the first step with at least the wanted number of rays, like RaysLadder::at_least().
   GLADSTONE_HD int at_least(double wanted) const {
     int step = 0;
     while (step + 1 < steps && static_cast<double>(rays[step]) < wanted) ++step;
     return step;
   }
-  /// Like ParticleLaunches::step_filled().
+  /// Returns the first step of a particle whose rays fill the stop, like ParticleLaunches::step_filled().
   GLADSTONE_HD int step_filled(double light, double spread2) const {
     return at_least(estimate_rays_for_spread(goal, ruled ? RayPlacement::by_rule : RayPlacement::clipped, light,
                                              spread2, static_cast<double>(rays[0])));
   }
-  /// Like RaysLadder::next().
+  /// Returns the step that a particle requires according to its rays at a step, like RaysLadder::next().
   GLADSTONE_HD int next(int step, RayPlacement sent, EdgeRaySpread const& rim, RaySums const* of_scramblings) const {
     if (step + 1 >= steps) return step;
     auto const here = static_cast<double>(rays[step]);
@@ -90,12 +90,12 @@ struct ParticlesLaunch {
   CameraView<double> camera;  ///< elements in device memory; the stop has a sharp edge, or a smooth one for wide aims
   TracingOptions<double> tracing;
   ParticleSources<double, AnyScattering>
-      pulses[frame_count];  ///< in device memory, indexed from the batch's first particle
+      pulses[frame_count];  ///< particles at each pulse in device memory, indexed from the batch's first particle
   std::uint64_t first = 0;  ///< index of the batch's first particle in the scene
   BundleView choice;
-  StopRuleView rule;  ///< in device memory; quadrature rule of rays that fill the stop, if any
+  StopRuleView rule;  ///< quadrature rule of rays that fill the stop, if any, in device memory
   SpotView spot;
-  HitSplineView spline;    ///< in device memory; null share: no windows of spline nodes
+  HitSplineView spline;    ///< weights of the spline in device memory; spline.share null: no windows of spline nodes
   int most_window_px = 0;  ///< maximum side of a window of spline nodes [px]
   int patch_px = 0;        ///< widest square of pixels in which a warp accumulates PSFs; 0: none
   DeviceImages images;     ///< images to which light is added; may be empty
@@ -111,7 +111,8 @@ struct ParticlesLaunch {
   GLADSTONE_HD std::uint64_t shares() const { return shares_of(rays); }
   /// Returns whether a warp traces all rays of a particle, because a window of spline nodes would not be efficient.
   bool few_rays() const { return patch_px > 0 || (!images.light[0] && rays <= 64); }
-  /// Returns the number of lanes per particle in this case: a power of two.
+  /// Returns the number of lanes that trace a particle if few_rays(): the smallest power of two that is at least
+  /// `rays`, at most 32.
   GLADSTONE_HD int lanes() const {
     int most = 32;
     while (static_cast<std::uint64_t>(most / 2) >= rays) most /= 2;
@@ -149,7 +150,8 @@ GLADSTONE_HD inline LightSquare light_square(ParticlesLaunch const& launch, Puls
   }
   if (launch.most_window_px == 0) return {};
   int const side =
-      wanted + 4 < launch.most_window_px ? wanted + 4 : launch.most_window_px;  // four more for the nodes around a ray
+      wanted + 4 < launch.most_window_px ? wanted + 4 : launch.most_window_px;  // four more pixels for the spline nodes
+                                                                                // around a ray
   return {side, first_x + (wide - side) / 2, first_y + (tall - side) / 2};
 }
 
@@ -162,8 +164,8 @@ GLADSTONE_HD AimedRay<double> aimed_ray(ParticlesLaunch const& launch, Sources c
   return ray_to(sources, launch.camera.aim_plane, map, i, at);
 }
 
-/// Maximum weight of a ray in a window, over that of the heaviest of the central and rim rays. PSFs of heavier rays are
-/// added to the image one by one.
+/// Maximum weight of a ray in a window of spline nodes, relative to the heaviest of the central and rim rays. PSFs of
+/// heavier rays are added to the image one by one.
 inline constexpr double heavier_in_window = 4;
 /// Returns the weight of ray k: a ray to the rim for k < rim_rays, the central ray for k = rim_rays.
 GLADSTONE_HD inline double weight_of_rim(ParticlesLaunch const& launch, PulseAim const& aim, int pulse, std::uint64_t i,
@@ -178,22 +180,22 @@ int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium const&
 
 /// Progress of the particles of a batch, in device memory.
 struct ParticleSteps {
-  int* step;    ///< current ladder step of each particle
-  int* next;    ///< next ladder step; equal to `step`: the particle has enough rays
-  int* chosen;  ///< whether to list the particle: it has been aimed, or needs more rays
-  unsigned int*
-      count;  ///< [step]: listed aims; last element: aims that the host computes, or particles that need more rays
+  int* step;            ///< current step of each particle in the sequence of ray numbers (RaysLadder)
+  int* next;            ///< next step of each particle; equal to `step`: the particle has enough rays
+  int* chosen;          ///< true: the particle is to be listed, because it has been aimed or needs more rays
+  unsigned int* count;  ///< [step] number of listed aims; last element: number of aims that the host computes, or of
+                        ///< particles that need more rays
 };
 
-/// Aims at the stop for both pulses of `count` particles, and determines the first ladder step of each.
-/// @param stop  with its elements in device memory
-/// @param launch  of any ladder step
+/// Aims at the stop for both pulses of `count` particles, and determines the first step of RaysLadder of each.
+/// @param stop  stop with its elements in device memory
+/// @param launch  launch of any step
 void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,
                    DeviceMedium const& medium, std::uint64_t count, PulseAim* aims, Vec2d* origins,
                    ParticleSteps const& steps);
 
-/// Lists, by ladder step, the aims of chosen particles that fill the stop.
-/// @param at  ladder step of each particle
+/// Lists, by number of rays, the aims of chosen particles whose rays fill the stop.
+/// @param at  step of each particle
 /// @param listed  output: [step][frame_count * count], in arbitrary order, which does not affect the results
 void list_particles(LadderView const& ladder, PulseAim const* aims, int const* at, ParticleSteps const& steps,
                     std::uint64_t count, std::uint32_t* listed);

@@ -24,7 +24,7 @@ inline constexpr std::size_t most_block_bytes = 96 * 1024;
 struct SourceOnDevice {
   std::uint64_t source;                               ///< index of the source in the pattern
   Vec3d centre, a, b, across, by_x, by_y;             ///< target area and its shift, as in AimedBundle
-  Vec2d origin;                                       ///< origin of its sums [px]
+  Vec2d origin;                                       ///< reference point on the sensor of the sums over the rays [px]
   int window_px = 0;                                  ///< side of the windows that accumulate its light; 0: none
   int left[frame_count] = {}, top[frame_count] = {};  ///< pixel of the first node in each frame
   double most_weight = 0;  ///< maximum weight of a ray in the window; PSFs of heavier rays are added one by one
@@ -39,7 +39,7 @@ struct SourcesLaunch {
   LambertSources<double> sources;  ///< sources in device memory
   BundleView choice;
   SpotView spot;
-  HitSplineView spline;    ///< in device memory; null share: PSFs are added one by one
+  HitSplineView spline;    ///< weights of the spline in device memory; null share: PSFs are added one by one
   int most_window_px = 0;  ///< maximum side of windows over all sources [px]
   DeviceImages images;     ///< images to which light is added; may be empty
   std::uint64_t rays = 1;
@@ -51,7 +51,7 @@ struct SourcesLaunch {
 
 /// Output of a launch, in device memory.
 struct SourcesTraced {
-  RaySums* sums;             ///< [source][share][scrambling]
+  RaySums* sums;             ///< sums over the rays, [source][share][scrambling]
   double* moved2;            ///< [source]: largest squared displacement of a ray by the medium [m^2]
   unsigned long long* ends;  ///< ray counts to be incremented: [frame][status]
 };

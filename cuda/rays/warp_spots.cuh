@@ -18,7 +18,7 @@ class WarpSpots {
       : pitch_(pitch_of(most_side)), columns_(reinterpret_cast<float*>(memory)), rows_(columns_ + warp_size * pitch_) {}
 
   /// Adds the PSFs of all lanes. Must be called by all lanes of the warp.
-  /// @param square  square of the ray's particle
+  /// @param square  square of pixels in which the light of the lane's particle is accumulated
   /// @param units  light of the ray; 0: none
   /// @param lanes  number of adjacent lanes per particle
   /// @return false if the ray's light is outside its square

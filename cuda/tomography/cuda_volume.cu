@@ -12,7 +12,7 @@ namespace {
 using tomography::SweepNorms;
 using tomography::SweepSums;
 
-/// Blocks of the sums over all nodes: a fixed number, on which the order of the sums depends.
+/// Number of blocks in sums over all nodes; constant, because the order of summation depends on it.
 constexpr int sum_blocks = 512;
 
 unsigned count_blocks(std::size_t items, int threads) {
@@ -157,13 +157,14 @@ class CudaVolume : public tomography::SartVolume {
   tomography::TotalVariationStencil stencil_;
   double relaxation_;
   std::size_t size_;
-  DeviceArray<double> volume_, before_, denoised_;  ///< now, after the last regularize(), scratch [kg/m^3]
+  DeviceArray<double> volume_, before_, denoised_;  ///< volume now, volume after the last regularize(), work space
+                                                    ///< [kg/m^3]
   DeviceArray<long long> views_;
   DeviceArray<Vec3d> dual_;
   DeviceArray<std::uint8_t> support_;
   tomography::NodeConstraint constraint_;
   std::vector<LinesOnDevice> lines_;
-  std::vector<std::size_t> first_block_;  ///< of each view in line_sums_
+  std::vector<std::size_t> first_block_;  ///< first block of each view in line_sums_
   std::size_t line_blocks_ = 0;
   DeviceArray<double> quotients_;
   DeviceArray<LineSums> line_sums_;

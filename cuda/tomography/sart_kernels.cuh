@@ -25,7 +25,7 @@ struct LineSums {
   }
 };
 
-/// Sum of squared changes, and the largest absolute value.
+/// Sum of the squared changes of nodes, and the largest absolute value of a node.
 struct ChangeSums {
   double change, largest;
   __device__ ChangeSums& operator+=(ChangeSums const& other) {
@@ -35,7 +35,7 @@ struct ChangeSums {
   }
 };
 
-/// Sums of the squares of changes and values.
+/// Sums of the squared changes and the squared values of nodes.
 struct NormSums {
   double change, volume;
   __device__ NormSums& operator+=(NormSums const& other) {
@@ -50,8 +50,8 @@ struct DeviceView {
   int count;
   tomography::SightLine const* lines;
   tomography::LineSamples const* samples;
-  double const* value;     ///< NaN: ignored
-  double const* row_sums;  ///< [m]
+  double const* value;     ///< line integral of each line; NaN: the line is ignored
+  double const* row_sums;  ///< row sum of the matrix for each line [m]
 };
 
 __global__ void sample_lines(tomography::VolumeShape shape, tomography::SightLine const* lines, int count,

@@ -1,5 +1,6 @@
-"""match.py A B VECTORS..: rms difference of both frames, deformed symmetrically by each file of vectors, over the rms of
-their mean, both high-passed; and the fractions of vectors whose normalised median residual is above 2 and above 3."""
+"""match.py A B VECTORS..: deforms both frames symmetrically by each file of vectors, and prints the rms difference of
+deformed frames relative to the rms of their mean (after a high-pass filter), and the fractions of vectors whose
+normalised median residual is above 2 and above 3."""
 import sys
 import warnings
 

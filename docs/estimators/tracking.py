@@ -76,7 +76,7 @@ def read_truth(case):
 
 
 def evaluate(vectors, middle, displacement):
-    """Statistics of the vectors, each assigned to the nearest dot within 1 px."""
+    """Returns statistics of the vectors; each vector is assigned to the nearest dot within 1 px."""
     with h5py.File(vectors) as file:
         at, measured, sigma = (np.stack([file[a][...], file[b][...]], axis=-1) for a, b in
                                (("x_px", "y_px"), ("u_px", "v_px"), ("sigma_u_px", "sigma_v_px")))
@@ -95,7 +95,7 @@ def evaluate(vectors, middle, displacement):
 
 
 def vortex(places, time):
-    """Places after a time [intervals] for each particle, for a largest velocity of 1 px per interval."""
+    """Returns the position of each particle after a time [intervals], for a largest velocity of 1 px per interval."""
     radius = places - SIDE / 2
     core = 8 * SPACING_PX
     angle = 2 / core / (1 + (radius**2).sum(axis=1) / core**2) * time
@@ -105,7 +105,7 @@ def vortex(places, time):
 
 
 def evaluate_grid(vectors, ratio):
-    """Fraction of valid vectors, and rms error of their displacements per component [px]."""
+    """Returns the fraction of valid vectors, and the rms error of their displacements per component [px]."""
     with h5py.File(vectors) as file:
         at, measured = (np.stack([file[a][...], file[b][...]], axis=-1) for a, b in
                         (("x_px", "y_px"), ("u_px", "v_px")))

@@ -31,14 +31,15 @@ POWERS = {  # formula of the AGF format: powers of the wavelength
 
 
 def without_zeros(words):
-    """Coefficients without the zeros at their end."""
+    """Returns the coefficients without trailing zeros."""
     while words and float(words[-1]) == 0:
         words = words[:-1]
     return words
 
 
 def dispersion(formula, words):
-    """Number of the formula and coefficients in the AGF format; None if it has no such formula."""
+    """Returns the number of the dispersion formula in the AGF format, and its coefficients; None if the format lacks
+    the formula."""
     if formula == "formula 2" and float(words[0]) == 0:  # n^2 - 1 = c1 + sum of B L^2 / (L^2 - C)
         terms = max(3, (len(words) - 1) // 2)
         return (SELLMEIER[terms], words[1:]) if terms in SELLMEIER else None

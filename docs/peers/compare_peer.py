@@ -1,4 +1,4 @@
-"""Speed and error of another program beside gladstone, on images that gladstone renders. Imported by the scripts of
+"""Speed and error of another program and of gladstone, on images that gladstone renders. Imported by the scripts of
 this folder, each of which measures one program and prints one table.
 
 The images are cases of `gladstone benchmark`: 1024 x 1024 px, 8 bit, 20 particles of 3 px per 32 x 32 px (docs/
@@ -32,7 +32,7 @@ OWN = {
 
 
 def timed(estimate):
-    """Returns a function (a, b) -> (seconds, vectors) of one that returns arrays x, y, u, v [px]."""
+    """Wraps a function that returns arrays x, y, u, v [px] as a function (a, b) -> (seconds, vectors)."""
     def measure(a, b):
         start = time.perf_counter()
         vectors = estimate(a, b)
@@ -50,7 +50,7 @@ def write_vectors(path, vectors):
 
 
 class Gladstone:
-    """The program gladstone on the cases of a folder."""
+    """Runs the program gladstone on the cases of a folder."""
 
     def __init__(self, program, folder, cases):
         self.program, self.folder, self.cases = program, folder, cases
@@ -137,6 +137,6 @@ def compare(title, peers, describe):
 
 
 def note_time(speed, name, seconds, count, turn):
-    """Keeps the shortest time of a program; the first round does not count."""
+    """Stores the shortest time of a program; the first round is ignored."""
     if turn > 0:
         speed[name] = min(speed.get(name, (float("inf"), count)), (seconds, count))

@@ -1,6 +1,6 @@
-"""Vectors of OpenPIV's windef, imported by peer_openpiv.py, steep_gradients.py and estimators/real_pairs.py: the steps of
-windef.piv() for two images in memory. The first pass is validated, and its outliers are replaced; every later pass
-does so itself.
+"""Computes vectors by the steps of OpenPIV's windef.piv(), for two images in memory. Outliers of the first pass are
+detected and replaced here; in later passes windef.multipass_img_deform() does both. Imported by peer_openpiv.py,
+steep_gradients.py and estimators/real_pairs.py.
 
 Needs: pip install openpiv==0.26.1
 """

@@ -64,7 +64,7 @@ def exact(n):
 
 
 def sensitivity():
-    """Displacement per derivative of the projection, against which the dots appear to move [px/(kg/m^3)]."""
+    """Returns the ratio of the dots' displacement to the negative derivative of the projection [px/(kg/m^3)]."""
     return magnification() * Z_D_MM * DALE / ((1 + DALE * AMBIENT) * PITCH_MM)
 
 

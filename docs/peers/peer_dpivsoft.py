@@ -1,4 +1,4 @@
-"""python3 docs/peers/peer_dpivsoft.py build/bin/gladstone: DPIVSoft on the CPU beside gladstone.
+"""python3 docs/peers/peer_dpivsoft.py build/bin/gladstone: DPIVSoft on the CPU compared with gladstone.
 
 Two passes of 64 and 32 px at overlap 0.5 with deformed windows, median test, and its other defaults. Its loop over the
 windows is Python; its implementation for OpenCL is not measured.

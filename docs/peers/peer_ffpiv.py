@@ -1,4 +1,4 @@
-"""python3 docs/peers/peer_ffpiv.py build/bin/gladstone: ffpiv beside gladstone.
+"""python3 docs/peers/peer_ffpiv.py build/bin/gladstone: ffpiv compared with gladstone.
 
 One pass of 32 px at overlap 0.5 with each engine that is installed, normalised windows, without validation.
 

@@ -1,4 +1,4 @@
-"""python3 docs/peers/peer_flowgym.py build/bin/gladstone: an estimator of Flow Gym, on JAX, beside gladstone.
+"""python3 docs/peers/peer_flowgym.py build/bin/gladstone: an estimator of Flow Gym, on JAX, compared with gladstone.
 
 "openpiv_jax" correlates windows of 32 px once at overlap 0.5, and interpolates the displacement to every pixel, of which
 every 16th along x and y is scored. Other estimators of the package were left out: "dis_jax" takes 0.4, 5 and 91 s

@@ -1,4 +1,4 @@
-"""python3 docs/peers/peer_openpiv.py build/bin/gladstone: OpenPIV with both of its backends beside gladstone.
+"""python3 docs/peers/peer_openpiv.py build/bin/gladstone: OpenPIV with both of its backends compared with gladstone.
 
 One pass of 32 px at overlap 0.5 with `circular` correlation and three-point Gaussian fit: as fast as possible (neither
 normalised nor validated), and normalised with peak ratio and median test, which gladstone's times contain; and windef

@@ -1,5 +1,5 @@
-"""python3 docs/peers/peer_pivlab.py build/bin/gladstone --pivlab PIVlab --rounds 2: PIVlab under GNU Octave beside
-gladstone.
+"""python3 docs/peers/peer_pivlab.py build/bin/gladstone --pivlab PIVlab --rounds 2: PIVlab under GNU Octave compared
+with gladstone.
 
 Three passes of 64, 32, 16 px at overlap 0.5, deformation by splines, and its own validation; see pivlab.py, which also
 lists what Octave requires to be changed. The time is that of correlation and validation inside of Octave, without its

@@ -75,7 +75,7 @@ class Field:
         return np.linalg.svd(gradient, compute_uv=False).max()
 
     def in_first_frame(self, x, y):
-        """Displacement of the particles that are at x, y in the first frame."""
+        """Returns the displacement of the particles whose position in the first frame is x, y."""
         u, v = self(x, y)
         for _ in range(60):
             u, v = self(x + 0.5 * u, y + 0.5 * v)
@@ -217,7 +217,7 @@ def main():
 
 
 def ninth(error):
-    """Smallest error that 90 % of the fields do not exceed."""
+    """Returns the smallest error that 90 % of the fields do not exceed."""
     return np.quantile(error, 0.9, method="higher")
 
 

@@ -75,14 +75,14 @@ def project(function, nodes, angles):
 
 
 def reconstruct_filtered(data, angles, truth, inside):
-    """Better of filtered back-projection with a ramp and with a Hann filter: error and filter."""
+    """Returns error and name of the better filter of filtered back-projection, ramp or Hann."""
     return min((relative_error(np.stack([iradon(data[:, j, :].T, angles, filter_name=name) for j in
                                          range(data.shape[1])], axis=1), truth, inside), name)
                for name in ("ramp", "hann"))
 
 
 def reconstruct_peer(data, angles, truth, inside):
-    """Best of 1 to 10 iterations of iradon_sart, slice by slice: error and number of iterations."""
+    """Returns the smallest error of 1 to 10 iterations of iradon_sart, slice by slice, and the number of iterations."""
     slices = [None] * data.shape[1]
     best = (np.inf, 0)
     for iteration in range(1, 11):
@@ -122,7 +122,7 @@ CODES = {"default": "gladstone, default", "best": "gladstone, best weight",
 
 
 def measure(function, nodes, views, noise):
-    """Errors by code, and the choices that led to them."""
+    """Returns the error of each program, and the selected number of iterations or filter."""
     truth, angles = sample(function, nodes), 180.0 * np.arange(views) / views
     position = np.arange(nodes) - nodes // 2
     circle = np.hypot(position[:, None], position[None, :]) <= nodes // 2 - 1

@@ -77,7 +77,7 @@ def run(words):
 
 
 def kill_at(words, folder, pairs):
-    """Starts a command and kills it after a number of pairs. @return pairs that are stored then"""
+    """Starts a command and kills it after a number of pairs. @return number of pairs that are stored at that time"""
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     while len(list(folder.glob("A_*.h5"))) < pairs and process.poll() is None:
         time.sleep(0.02)
@@ -87,7 +87,7 @@ def kill_at(words, folder, pairs):
 
 
 def equal(a, b):
-    """Are all datasets of two files equal, bit by bit?"""
+    """Returns True if all datasets of two files are equal, bit by bit."""
     def datasets(file):
         found = {}
         file.visititems(lambda name, item: found.update({name: item[...].tobytes()})

@@ -31,6 +31,7 @@ from ._errors import (
     OutputError,
     Problem,
     SetupError,
+    WarningText,
 )
 from ._field import Field
 from ._preview import Preview, preview, target
@@ -56,7 +57,7 @@ __all__ = [
     "Accuracy", "Batch", "BenchmarkCase", "Calibration", "CalibrationCase", "Case", "DataError", "Density", "Design",
     "DeviceError", "Error", "Field", "GladstoneWarning", "Mie", "NoValidVector", "Oracle", "OutOfMemory", "OutputError",
     "Preview", "Problem", "RenderedBatches", "Report", "Scores", "Sequence", "Setup", "SetupError", "SetupKey", "Study",
-    "StudyRun", "ThreeComponents", "Tomography", "TracedRays", "Truth", "__version__", "benchmark", "benchmark_cases",
+    "StudyRun", "ThreeComponents", "Tomography", "TracedRays", "Truth", "WarningText", "__version__", "benchmark", "benchmark_cases",
     "benchmark_estimators", "build", "calibrate", "compare", "convert", "correlate", "correlate_ensemble",
     "correlate_sequence", "demo", "design", "gallery", "info", "init", "keys", "mie", "preview", "reconstruct",
     "reconstruct_lines", "render", "render_sequence", "report", "set_threads", "shared_folder", "stereo", "target",

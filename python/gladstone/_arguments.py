@@ -1,4 +1,4 @@
-"""Names of arguments in messages: those of the called function in place of command-line options and setup keys.
+"""Replaces command-line options and setup keys in messages by the arguments of the called Python function.
 
 The library words its messages for the command line. Only names are replaced; nothing depends on the wording.
 """
@@ -43,19 +43,21 @@ class CalledFunction:
         return self._code is not None and "settings" in self._code.co_varnames and bool(self._code.co_flags & 0x08)
 
     def option(self, name: str) -> str | None:
-        """Returns the argument of a command-line option, "--spacing" -> "spacing_mm"; None: there is none."""
+        """Returns the argument that corresponds to a command-line option, "--spacing" -> "spacing_mm"; None if there is
+        none."""
         plain = name.removeprefix("--").replace("-", "_")
         return next((one for one in self._arguments if re.fullmatch(plain + "s?_?(mm|deg|px|nm)?", one)), None)
 
     def setting(self, key: str) -> str:
-        """Returns the argument of a setup key, "correlate.window_px" -> "window"; other keys are unchanged."""
+        """Returns the argument that corresponds to a setup key, "correlate.window_px" -> "window"; other keys are
+        unchanged."""
         if not self._has_settings or not key.startswith(_TABLE):
             return key
         name = key.removeprefix(_TABLE)
         return "window" if name == "window_px" else name
 
     def message(self, text: str) -> str:
-        """Returns a message with the names of arguments."""
+        """Returns a message in which arguments replace options and keys."""
         if self._has_settings:
             text = text.replace(_TABLE + "window_px", "window").replace(_TABLE, "")
         if "device" in self._arguments:
@@ -63,7 +65,7 @@ class CalledFunction:
         return re.sub(r"--[a-z]+(?:-[a-z]+)*", lambda match: self.option(match[0]) or match[0], text)
 
     def unknown_setting(self, name: str) -> str:
-        """Returns the message about an argument that does not exist, with the most similar one."""
+        """Returns the message about an argument that does not exist; it suggests the most similar argument."""
         from . import _core
 
         known = {one["key"].split(".")[1] for one in json.loads(_core.find_keys(_TABLE + "*"))["keys"]}

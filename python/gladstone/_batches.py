@@ -1,4 +1,4 @@
-"""Batches of image pairs for training, without a framework."""
+"""Batches of rendered image pairs for training, independent of any machine-learning framework."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ Changes = Mapping[str, Any]
 
 
 class Batch(NamedTuple):
-    """Image pairs and their displacement: arrays with DLPack, on the device that rendered them."""
+    """Image pairs and their displacement. The arrays support DLPack and are in the memory of the device that rendered
+    them."""
 
     images: Any
     """[pairs, 2, rows, columns]: frames a and b."""
@@ -29,8 +30,9 @@ class RenderedBatches:
     """Batches of PIV pairs with ideal particle images and exact displacement at every pixel.
 
     Item k depends on k alone. Particles are seeded, moved, drawn and recorded on the device. Results of a GPU remain in
-    its memory: `torch.from_dlpack`, `cupy.from_dlpack` and `jax.dlpack.from_dlpack` accept them without a copy. Those of
-    the CPU are NumPy arrays. During iteration, the models of the next batch are built in another thread.
+    the memory of the GPU: `torch.from_dlpack`, `cupy.from_dlpack` and `jax.dlpack.from_dlpack` accept them without a
+    copy. Results of the CPU are NumPy arrays. During iteration, the models of the next batch are built in another
+    thread.
 
     Example: another vortex in each pair
 
@@ -52,13 +54,13 @@ class RenderedBatches:
         device: str = "auto",
         dtype: Literal["float32", "uint8", "uint16"] = "float32",
     ):
-        """Makes batches of `batch` pairs.
+        """Describes batches of `batch` pairs each; they are rendered on access.
 
-        setup: a `Setup`, a dictionary of tables, or a setup file, of PIV with one camera whose particles have ideal
-            images; particles.scattering = "gaussian", "lambert", or "mie" with one diameter.
+        setup: a `Setup`, a dictionary of tables, or a setup file of a PIV experiment with one camera and ideal particle
+            images: particles.scattering = "gaussian", "lambert", or "mie" with one diameter.
         vary: function of the batch's index and a random generator that returns the keys to replace: a dictionary for
-            all pairs, or a list of one dictionary per pair. The frame size must be the same for all pairs of a
-            batch. Other numbers in [flow] cost least, since only this table is read again.
+            all pairs, or a list of one dictionary per pair. The frame size must be the same for all pairs of a batch.
+            Changing only numbers in [flow] is fastest, since only this table is then read again.
         length: number of batches; None: unlimited.
         seed: changes the particles, the noise and the random generator of all batches.
         device: "auto" (a GPU if there is one), "cpu" or "cuda".
@@ -106,7 +108,8 @@ class RenderedBatches:
         return self._render(seeds, self._build(changes))
 
     def _draw(self, index: int) -> tuple[list[tuple[int, int]], list[list[str]] | None]:
-        """Returns the seeds of the pairs and the assignments of one or all pairs; None: no keys are replaced."""
+        """Returns the seeds of the pairs, and the key assignments common to all pairs or of each pair; None if no keys
+        are replaced."""
         random = np.random.default_rng([self.seed, index])
         seeds = [tuple(pair) for pair in random.integers(1, 2**31, (self.batch, 2)).tolist()]
         if self.vary is None:
@@ -118,7 +121,7 @@ class RenderedBatches:
         return seeds, [[f"{key}={_toml.value(value)}" for key, value in pair.items()] for pair in pairs]
 
     def _build(self, changes: list[list[str]] | None):
-        """Returns the models of a batch; None if they are those that all batches share."""
+        """Returns the models of a batch; None if all batches share the same models."""
         return None if changes is None else self._source.models(changes)
 
     def _render(self, seeds: list[tuple[int, int]], models) -> Batch:

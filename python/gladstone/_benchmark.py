@@ -21,7 +21,7 @@ class BenchmarkCase:
     """Image pair of 8 bits with a displacement that is known everywhere."""
 
     def __init__(self, name: str, *, device: str = "auto"):
-        """Makes the case of this name; `benchmark_cases` lists them."""
+        """Renders the case with this name; `benchmark_cases` lists all names."""
         self._core = _core.benchmark_case(name, device)
 
     @property
@@ -45,7 +45,8 @@ class BenchmarkCase:
         return self._core.images()[1]
 
     def truth(self, x, y) -> np.ndarray:
-        """Returns the displacement [..., 2] at the points x, y, each the midpoint of both image positions [px]."""
+        """Returns the true displacement [..., 2] at points (x, y). Each point is the midpoint between the positions of
+        a particle in both frames [px]."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         flat = self._core.truth(np.ascontiguousarray(x.ravel()), np.ascontiguousarray(y.ravel()))
         return flat.reshape(*x.shape, 2)
@@ -56,18 +57,19 @@ class BenchmarkCase:
 
 
 def benchmark_cases() -> list[str]:
-    """Names of the published cases."""
+    """Returns the names of the published cases."""
     return _core.benchmark_cases()
 
 
 def benchmark_estimators() -> list[str]:
-    """Names of gladstone's own estimators."""
+    """Returns the names of gladstone's own estimators."""
     return _core.benchmark_estimators()
 
 
 class Scores(list):
-    """Rows of scores, dictionaries with the keys estimator, case, seconds and the error measures: `rms_px` of all valid
-    vectors, `rms_without_gross_px` of those with errors of at most 1 px, the number `gross` of the others, ..."""
+    """List of scores, one dictionary for each estimator and case. The keys are estimator, case, seconds and the error
+    measures: `rms_px` of all valid vectors, `rms_without_gross_px` of the vectors with errors of at most 1 px, the
+    number `gross` of vectors with larger errors, ..."""
 
     def to_pandas(self):
         """Returns a pandas.DataFrame with a row for each estimator and case."""
@@ -76,7 +78,7 @@ class Scores(list):
         return pandas.DataFrame(list(self))
 
     def table(self, measure: str = "rms_px") -> str:
-        """Returns a text table: cases down, estimators across."""
+        """Returns a text table of one measure, with a row for each case and a column for each estimator."""
         cases = list(dict.fromkeys(row["case"] for row in self))
         names = list(dict.fromkeys(row["estimator"] for row in self))
         values = {(row["case"], row["estimator"]): row.get(measure) for row in self}
@@ -107,22 +109,23 @@ def benchmark(
 ) -> Scores:
     """Scores estimators of displacement on published cases.
 
-    estimators: functions of two frames (uint8 [rows, columns]) by name. Each returns a `Field`, arrays (x, y, u, v)
-        in px, or dense displacements [rows, columns, 2] or [2, rows, columns] at every pixel.
+    estimators: dictionary of functions by name. Each function takes two frames (uint8 [rows, columns]) and returns a
+        `Field`, arrays (x, y, u, v) in px, or dense displacements [rows, columns, 2] or [2, rows, columns] at every
+        pixel.
     cases: names of the cases; default: all.
-    own: gladstone's estimators to score for comparison; `benchmark_estimators` lists them.
+    own: gladstone's estimators that are scored for comparison; `benchmark_estimators` lists them.
     at: position to which dense displacements refer: "mid" (midpoint of both images of a particle) or "a" (position in
         frame a, as for most optical-flow networks).
 
-    Returns the scores, a row for each estimator and case; `print` shows the rms errors in px, without gross errors and of
-    all vectors.
+    Returns the scores, one row for each estimator and case. `print` shows two tables of rms errors in px: one without
+    gross errors, one of all vectors.
     """
     check_choice("at", at, ("mid", "a"))
     if estimators is not None and not isinstance(estimators, Mapping):
         raise TypeError('estimators must be functions by name: {"mine": my_function}')
     own = list(own)
     for name in {*own} & {*(estimators or {})}:
-        raise ValueError(f'"{name}" is an estimator of gladstone that is scored, too; choose another name')
+        raise ValueError(f'"{name}" is also the name of an estimator of gladstone; choose another name')
     scores = Scores()
     names = list(cases) if cases is not None else benchmark_cases()
     with reporting(progress) as report:

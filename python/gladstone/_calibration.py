@@ -18,7 +18,7 @@ from ._setup import Setup
 
 
 class Calibration(Measurement):
-    """Pinhole camera with distortion and polynomial, fitted to the dots of several planes."""
+    """Pinhole camera with distortion, and polynomial camera model, fitted to the dots of several planes."""
 
     @property
     def camera_matrix(self) -> np.ndarray:
@@ -43,7 +43,7 @@ class Calibration(Measurement):
 
     @property
     def standard_error(self) -> np.ndarray:
-        """[14] standard errors of fx, fy, cx, cy, k1, k2, p1, p2, rvec, tvec, in their units."""
+        """[14] standard errors of fx, fy, cx, cy, k1, k2, p1, p2, rvec, tvec, in the units of these parameters."""
         return self._core.array("standard_error")
 
     @property
@@ -53,7 +53,7 @@ class Calibration(Measurement):
 
     @property
     def pixel(self) -> np.ndarray:
-        """[N, 2] positions of their images [px]."""
+        """[N, 2] measured positions of the dot images [px]."""
         return self._core.array("pixel")
 
     @property
@@ -87,7 +87,7 @@ class Calibration(Measurement):
 def calibrate(given, images: Iterable[str | os.PathLike] = (), *, progress: Progress = False) -> Calibration:
     """Fits a camera to images of a dot grid in several planes.
 
-    given: a `CalibrationCase`, its CASE folder, or, with `images`, a setup (or its file) that describes the grid.
+    given: a `CalibrationCase`, or its CASE folder; or, with `images`, a setup (or its file) that describes the grid.
     images: your own image files, one for each plane of calibration.planes_mm in that order.
     """
     files = [os.fspath(one) for one in images]

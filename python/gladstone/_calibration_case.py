@@ -28,7 +28,7 @@ class CalibrationCase:
 
     @property
     def setup(self) -> Setup:
-        """Setup with every default, and the value used in place of every "auto"."""
+        """Setup with all keys: defaults are included, and every "auto" is replaced by the value that was used."""
         return Setup(self._core.resolved())
 
     def save(self, folder: str | os.PathLike) -> None:

@@ -18,10 +18,10 @@ from ._setup import Setup
 
 
 class Accuracy(NamedTuple):
-    """Standard errors of the true displacements and of the images, from the scatter of the rays."""
+    """Standard errors of the true displacements and of the images, estimated from the scatter of the rays."""
 
     rms_px: float
-    """Rms over dots and components [px]; NaN: unknown."""
+    """Rms of the standard error of the displacement, over dots and components [px]; NaN: unknown."""
     largest_px: float
     """Largest error of a component [px]."""
     worst: int
@@ -31,15 +31,16 @@ class Accuracy(NamedTuple):
     unknown: int
     """Number of visible dots whose error is unknown, since too few rays reached the sensor."""
     image_error_levels: float
-    """Error of lit pixels, rms [grey levels of 12 bits, or of the camera if it has fewer]; NaN: not measured
-    (``render.rays_per_dot`` is a number, or the deflection table was used)."""
+    """Rms error of the grey levels of lit pixels [grey levels at 12 bits, or at the camera's bit depth if that is
+    lower]; NaN: not measured (``render.rays_per_dot`` is a number, or the deflection table was used)."""
 
 
 class Truth:
     """True positions and displacements of the dots or particles of a case. Arrays are read-only views.
 
     Pixel coordinates: column x to the right, row y downwards, from 0 at the centre of the first pixel. Displacements
-    are those from frame a to frame b, u to the right and v downwards. NaN: no light reaches the sensor.
+    are those from frame a to frame b, u to the right and v downwards. NaN: no light of the dot or particle reaches the
+    sensor.
     """
 
     def __init__(self, core: _core.PairCase):
@@ -83,7 +84,8 @@ class Truth:
 
     @property
     def flux(self) -> np.ndarray:
-        """[N, 2] light in frames a and b; BOS: in fully lit pixels, PIV: in photons."""
+        """[N, 2] light of each dot or particle in frames a and b. Unit for BOS: light of a fully lit pixel; for PIV:
+        photons."""
         return self._array("flux")
 
     @property
@@ -132,18 +134,18 @@ class Truth:
     ) -> np.ndarray:
         """Computes the true displacement at every pixel, independently of the dots or particles of the case.
 
-        at: "a": displacement of the object point whose image in frame a is at the pixel, the convention of
-            optical-flow networks;
-            "mid": displacement of the object point whose images in both frames have the pixel as their midpoint, the
-            convention of correlation with symmetric window deformation.
+        at: "a": displacement of the object point whose image in frame a is at the pixel, the convention of optical-flow
+            networks; "mid": displacement of the object point whose images in both frames have the pixel as their
+            midpoint, the convention of correlation with symmetric window deformation.
         spacing_px: distance of the computed columns and rows [px].
-        exact: traces rays to every one of these pixels, which takes up to 16 times as long (35 instead of 4.4 s of
-            processor time for 256 x 256 px of a BOS case). Each pixel is then independent of the others.
+        exact: traces rays to every computed pixel instead of interpolating, which takes up to 16 times as long (35
+            instead of 4.4 s of processor time for 256 x 256 px of a BOS case). The value of each pixel is then
+            independent of the other pixels.
 
         Returns [rows, columns, 2] in px. By default, rays are traced to every fourth column and row, and to all pixels
         around which the displacement deviates from its cubic interpolation over 8 px by more than 5e-4 px and four
         standard errors. The other pixels are interpolated from these, over at most 4 px, so that features below 4 px
-        can be missed. Computed once for each choice.
+        can be missed. The result is stored, so that a repeated call with the same arguments returns at once.
         """
         check_choice("at", at, ("mid", "a"))
         check_whole("spacing_px", spacing_px, 1, 10_000)
@@ -163,12 +165,12 @@ class Truth:
         device: str = "auto",
         progress: Progress = False,
     ) -> None:
-        """Writes true displacements in the format of the ending, as `Field.save`.
+        """Writes true displacements in the format that the ending of `path` selects, as `Field.save` does.
 
-        spacing_px: writes the displacement at every such column and row of the image, as `flow`. Default: 1 for .nc and
-            .vti, which store grids; otherwise the displacements of the dots or particles, at their positions in frame a
-            and with their standard errors as uncertainty.
-        exact: as for `flow`, and with the default spacing 1 for all formats.
+        spacing_px: distance between the columns and rows at which the displacement is computed, as for `flow` [px].
+            Default: 1 for .nc and .vti, which store grids; otherwise the displacements of the dots or particles, at
+            their positions in frame a and with their standard errors as uncertainty.
+        exact: traces rays to every pixel, as for `flow`; the default spacing is then 1 for all formats.
         """
         if spacing_px is None and (exact or os.fspath(path).endswith((".nc", ".vti"))):
             spacing_px = 1
@@ -186,7 +188,7 @@ class Truth:
 
 
 class Case:
-    """Image pair of one camera with its truth."""
+    """Image pair of one camera, with the true displacements."""
 
     def __init__(self, core: _core.PairCase):
         self._core = core
@@ -239,7 +241,7 @@ class Case:
 
     @property
     def setup(self) -> Setup:
-        """Setup with every default, and the value used in place of every "auto"."""
+        """Setup with all keys: defaults are included, and every "auto" is replaced by the value that was used."""
         return Setup(self._core.resolved())
 
     def correlate(self, **settings) -> Field:

@@ -1,4 +1,5 @@
-"""Commands that read and write files and folders: sequences, conversions, views, reports, examples, oracles."""
+"""Commands that read and write files and folders: sequences, conversions, views, reports, examples, and comparisons
+with exact solutions."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ def render_sequence(
     device: str = "auto",
     progress: Progress = False,
 ) -> dict[str, Any]:
-    """Renders a setup with a table [sequence] into a folder, as `gladstone render`: the frames, and a CASE of each pair.
+    """Renders a setup with a table [sequence] into a folder, as `gladstone render` does: the frames, and a CASE of each
+    pair.
 
     setup: a `Setup`, a dictionary of tables, or a setup file.
     folder: the frames are in `frames`, the cases in `pair_0000`, ...; `Case.load` reads them. The same call continues
@@ -51,18 +53,21 @@ def convert(
     device: str = "auto",
     progress: Progress = False,
 ) -> dict[str, Any]:
-    """Converts a file of vectors to the format of an ending, as `gladstone convert`.
+    """Converts a file of vectors to the format that the ending of `path` selects, as `gladstone convert` does.
 
-    source: vectors of gladstone in any of these formats, of OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV, PIVPy or any
-        x, y, u, v; or truth.h5 of a case, for the true displacements of its dots or particles, or of its pixels.
-    path: .h5, .csv, .nc, .mat, .dat (Tecplot), .vti or .vtp.
-    conventions: conventions of a file of another program; default: those of its format.
+    source: file of vectors of gladstone in any of the formats below, of OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV,
+        PIVPy or any x, y, u, v; or truth.h5 of a case, for the true displacements of its dots or particles, or of its
+        pixels.
+    path: file to write: .h5, .csv, .nc, .mat, .dat (Tecplot), .vti or .vtp.
+    conventions: conventions of a file of another program; default: the conventions of its format.
     image_rows: number of rows of the image, required for files that count y upwards from its lower edge.
-    spacing_px: of truth.h5, computes the displacement at every such column and row of the image, at the position `at`, as
-        `Truth.flow`. Default: 1 for .nc and .vti, which store grids; otherwise the dots or particles.
-    exact: traces rays to every one of these pixels, as in `Truth.flow`.
+    spacing_px: for truth.h5, distance between the columns and rows of the image at which the displacement is computed
+        [px], with the position `at` as in `Truth.flow`. Default: 1 for .nc and .vti, which store grids; otherwise the
+        dots or particles.
+    exact: traces rays to every computed pixel, as in `Truth.flow`.
 
-    Returns the `format` of the source and the numbers of `vectors`, of `valid` ones, and of grid `columns` and `rows`.
+    Returns the `format` of the source, the number of `vectors`, the number of `valid` vectors, and the numbers of grid
+    `columns` and `rows`.
     """
     check_choice("at", at, ("mid", "a"))
     check_whole("image_rows", image_rows, 0, 1_000_000)
@@ -77,11 +82,11 @@ def convert(
 def views(
     case: str | os.PathLike, folder: str | os.PathLike | None = None, *, across: int = 5, refocus_mm: float | None = None
 ) -> dict[str, Any]:
-    """Extracts the views of a plenoptic camera from a CASE folder, as `gladstone views`.
+    """Extracts the views of a plenoptic camera from a CASE folder, as `gladstone views` does.
 
-    folder: for FRAME/view_ROW_COLUMN.tif and views.json; default: CASE/views.
+    folder: folder to which FRAME/view_ROW_COLUMN.tif and views.json are written; default: CASE/views.
     across: number of views across the diameter of the stop.
-    refocus_mm: also writes FRAME_refocused.tif, in focus on the plane of this Z [mm].
+    refocus_mm: also writes FRAME_refocused.tif, an image that is focused on the plane at this Z [mm].
 
     Returns the contents of views.json.
     """
@@ -102,13 +107,13 @@ def report(
     device: str = "auto",
     progress: Progress = False,
 ) -> str:
-    """Writes the report of a study, a case or a measurement, as `gladstone report`. Returns its findings.
+    """Writes the report of a study, a case or a measurement, as `gladstone report` does. Returns the findings as text.
 
     folder: RUN folder of a study, CASE folder, or folder of a measurement (setup and vectors without truth).
     path: .html (one file that works offline) or .md; default: report.html in the folder.
-    vectors: for a CASE: file of vectors; default: those of the CASE.
+    vectors: for a CASE: file of vectors; default: the vectors of the CASE.
     repeats: for a measurement: vectors of repeated measurements of the same field.
-    conventions: conventions of vectors of another program; default: those of their format.
+    conventions: conventions of vectors of another program; default: the conventions of their format.
     figures: folder for the figures as separate files, in `figure_format` ("png", "svg" or "pdf").
     """
     check_choice("figure_format", figure_format, ("png", "svg", "pdf"))
@@ -125,26 +130,28 @@ def report(
 
 
 def demo(folder: str | os.PathLike = "out/demo", *, device: str = "auto", progress: Progress = False) -> str:
-    """Computes the experiment of Rajendran et al. (2019) into a folder, as `gladstone demo`. Returns its summary."""
+    """Simulates the experiment of Rajendran et al. (2019) and writes the results into a folder, as `gladstone demo`
+    does. Returns a summary."""
     with reporting(progress) as report_progress:
         return _core.demo(os.fspath(folder), device, report_progress)
 
 
 def gallery(folder: str | os.PathLike = "out/gallery", *, device: str = "auto", progress: Progress = False) -> str:
-    """Renders degraded particle images into a folder, as `gladstone gallery`. Returns their descriptions."""
+    """Renders degraded particle images into a folder, as `gladstone gallery` does. Returns descriptions of the
+    images."""
     with reporting(progress) as report_progress:
         return _core.gallery(os.fspath(folder), device, report_progress)
 
 
 class Oracle(NamedTuple):
-    """Quantity with a known exact value, and its value by gladstone; see `validate`."""
+    """Comparison of a quantity computed by gladstone with its exact value; see `validate`."""
 
     name: str
-    """Quantity, with its unit if it has one."""
+    """Name of the quantity, with the unit if there is one."""
     source: str
     """Source of the exact value: author, year, equation."""
     measured: float
-    """Value by gladstone."""
+    """Value computed by gladstone."""
     exact: float
     """Exact value."""
     tolerance: float
@@ -156,6 +163,7 @@ class Oracle(NamedTuple):
 
 
 def validate(*, device: str = "auto", progress: Progress = False) -> list[Oracle]:
-    """Compares results of gladstone with exact solutions, as `gladstone validate`. Returns one `Oracle` for each."""
+    """Compares results of gladstone with exact solutions, as `gladstone validate` does. Returns one `Oracle` for each
+    comparison."""
     with reporting(progress) as report_progress:
         return [Oracle(*row) for row in _core.oracles(device, report_progress)]

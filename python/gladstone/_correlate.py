@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from . import _core, _toml
+from ._errors import WarningText
 from ._field import Field
-from ._images import image_array, mask_images
+from ._images import gpu_image, image_array, mask_images, on_first_gpu
 from ._messages import deliver
 from ._progress import Progress, reporting
 
@@ -37,30 +38,38 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     """Measures the displacement from frame a to frame b by cross-correlation.
 
     a, b: images [rows, columns] of any array library (NumPy, xarray, torch, CuPy, JAX, ...), of integers or of 32- or
-        64-bit floats, in any memory layout. BOS: the reference image first. Each is copied once, to float64. Pixels
-        that are NaN, or masked by numpy.ma, are excluded from the windows.
+        64-bit floats, in any memory layout. BOS: the reference image first. Each image is copied once, to float64,
+        within the same memory: images on a GPU remain on the GPU. Pixels that are NaN, or masked by numpy.ma, are
+        excluded from the windows.
     window: size of the interrogation window in each pass [px], for example [64, 32, 24, 20].
     overlap: fraction of the window that neighbouring windows share.
     uncertainty: method that estimates sigma_u and sigma_v; default: correlation statistics on a CPU, none on a GPU.
-    mask: array of bool [rows, columns] that is True at the pixels to exclude, as in numpy.ma; or tables [correlate.mask].
-    Further settings are the keys of the table [correlate]: method, subpixel, weighting, ...
+    mask: array of bool [rows, columns] that is True at the pixels to exclude, as in numpy.ma; or tables
+        [correlate.mask]. Further settings are the keys of the table [correlate]: method, subpixel, weighting, ...
 
     The vectors are equal bit by bit to those of `gladstone correlate`.
     Raises `SetupError` for settings and `DataError` for images that cannot be correlated.
     """
-    a, b = image_array(a, "a"), image_array(b, "b")
-    if getattr(settings.get("mask"), "dtype", None) == bool:
+    masked = getattr(settings.get("mask"), "dtype", None) == bool
+    if not masked and device != "cpu" and on_first_gpu(a) and on_first_gpu(b) and _core.gpu_is_usable():
+        a, b, measure = gpu_image(a, "a"), gpu_image(b, "b"), _core.correlate_gpu_images
+    else:
+        a, b, measure = image_array(a, "a"), image_array(b, "b"), _core.correlate
+    if masked:
         a, b = mask_images(settings.pop("mask"), a, b)
     with reporting(progress) as report:
-        core = _core.correlate(a, b, overrides(settings), device, report)
-    field = Field._of(core)
+        field = Field._of(measure(a, b, overrides(settings), device, report))
     warnings = field.warnings
     if not warnings and not field.valid.any():
         warnings = [
-            f"none of the {len(field)} vectors is valid; "
-            "check that both frames show one scene, with dots in every window"
+            WarningText(
+                "unreliable",
+                "",
+                f"none of the {len(field)} vectors is valid; "
+                "check that both frames show one scene, with dots in every window",
+            )
         ]
-    deliver([(True, warning) for warning in warnings])
+    deliver(warnings)
     return field
 
 
@@ -69,7 +78,8 @@ def correlate_ensemble(
 ) -> Field:
     """Measures one displacement field from many pairs, by the mean of their correlation planes, on the CPU.
 
-    images: image files, frames a and b of each pair in turn, all of one size.
+    images: image files of equal size, in the order: frame a and frame b of the first pair, frame a and frame b of the
+        second pair, ...
     settings: window, overlap, method, ..., as for `correlate`; `mask` must be tables.
 
     The vectors are equal bit by bit to those of `gladstone correlate --ensemble`.
@@ -79,5 +89,5 @@ def correlate_ensemble(
         raise ValueError(f"got {len(files)} images; give frames a and b of each pair")
     with reporting(progress) as report:
         field = Field._of(_core.correlate_ensemble(files, overrides(settings), report))
-    deliver([(True, warning) for warning in field.warnings])
+    deliver(field.warnings)
     return field

@@ -1,11 +1,11 @@
-"""Density of a BOS measurement with its uncertainty."""
+"""Reconstruction of density and its uncertainty from BOS vectors."""
 
 from __future__ import annotations
 
 import json
 import os
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -19,8 +19,8 @@ from ._setup import Setup
 
 
 class Density(Measurement):
-    """Density in the mid-plane of the medium, averaged over its thickness, or of an axisymmetric flow in the plane
-    through its axis.
+    """Density in the mid-plane of the medium, averaged over the thickness of the medium; for an axisymmetric flow, the
+    density in the plane through the axis.
 
     Arrays are [rows, columns], read-only, with x to the right and y upwards: row 0 is the lowest. NaN: not determined.
     """
@@ -42,7 +42,8 @@ class Density(Measurement):
 
     @property
     def sigma(self) -> np.ndarray:
-        """Standard uncertainty of the density: vectors, reference density and scale [kg/m^3]."""
+        """Standard uncertainty of the density; includes the uncertainties of the vectors, the reference density and the
+        scale [kg/m^3]."""
         return self._core.array("sigma")
 
     @property
@@ -52,12 +53,14 @@ class Density(Measurement):
 
     @property
     def gradient(self) -> np.ndarray:
-        """[rows, columns, 2] measured gradient (d/dx, d/dy) [kg/m^4]; axisymmetric: differences of the density."""
+        """[rows, columns, 2] measured density gradient (d/dx, d/dy) [kg/m^4]; axisymmetric: computed from differences
+        of the density."""
         return self._core.array("gradient")
 
     @property
     def region(self) -> np.ndarray:
-        """Connected region of valid vectors, 0: the largest; -1: no valid vector."""
+        """Index of the connected region of valid vectors to which each node belongs; 0: the largest region; -1: no
+        valid vector."""
         return self._core.array("region")
 
     @property
@@ -67,12 +70,12 @@ class Density(Measurement):
 
     @property
     def truth(self) -> np.ndarray | None:
-        """True density of a rendered case [kg/m^3]."""
+        """True density [kg/m^3]; None unless the case was rendered."""
         return self._core.array("truth")
 
     @property
     def error(self) -> np.ndarray | None:
-        """Density minus true density of a rendered case [kg/m^3]."""
+        """Density minus true density [kg/m^3]; None unless the case was rendered."""
         return None if self.truth is None else self.density - self.truth
 
     @property
@@ -86,8 +89,8 @@ class Density(Measurement):
         return self.summary.get("budget_kg_m3", {})
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes density, uncertainty and gradient with their axes [mm], as `gladstone reconstruct` does: .h5, .nc, .vti,
-        .mat or .csv."""
+        """Writes density, uncertainty and gradient with their axes [mm], as `gladstone reconstruct` does: .h5, .nc,
+        .vti, .mat or .csv."""
         self._core.save(os.fspath(path))
 
     def to_xarray(self):
@@ -114,7 +117,7 @@ class Density(Measurement):
         )
 
     def plot(self):
-        """Draws maps of density and uncertainty, and for a rendered case of the error. Returns a matplotlib figure."""
+        """Draws maps of density and uncertainty, and of the error for a rendered case. Returns a matplotlib figure."""
         from ._plot import plot_density
 
         return plot_density(self)
@@ -132,11 +135,11 @@ def reconstruct(
     reference_density: float | None = None,
     reference_sigma: float = 0.0,
     scale_uncertainty: float = 0.0,
-    method: Literal["wls", "poisson"] = "wls",
+    method: str = "wls",
     overlap: float | None = None,
     deconvolve: float | None = None,
     axis: str | None = None,
-    abel: Literal["direct", "tikhonov"] = "direct",
+    abel: str = "direct",
     lambda_: float | None = None,
     samples: int = 400,
     budget: bool = False,
@@ -146,29 +149,32 @@ def reconstruct(
 ) -> Density:
     """Reconstructs density from BOS vectors, equal bit by bit to `gladstone reconstruct`.
 
-    source: vectors: a `Field`, the path of a file, or anything that `Field.of` accepts [px]. Without `setup`: the path
-        of a CASE folder with its vectors, or a `Case`, which is correlated with its own settings if it was rendered.
+    source: vectors [px]: a `Field`, the path of a file, or anything that `Field.of` accepts. Without `setup`: the path
+        of a CASE folder that contains vectors, or a `Case`; a rendered `Case` is correlated with its own settings
+        first.
     setup: a `Setup` of the experiment, the `Case` of the vectors, or the path of a setup or a CASE folder.
-    reference: region of known density: "left", "right", "top", "bottom" ("left:3" for three columns), a box
-        (x0, y0, x1, y1) in mm from the optical axis, or a list of these. Required unless `axis` is given.
-    reference_density, reference_sigma: density there, default the ambient density, and its standard uncertainty
-        [kg/m^3].
+    reference: region of known density: "left", "right", "top", "bottom" ("left:3" for three columns), a box (x0, y0,
+        x1, y1) in mm from the optical axis, or a list of these. Required unless `axis` is given.
+    reference_density, reference_sigma: density in the reference region (default: the ambient density) and its standard
+        uncertainty [kg/m^3].
     scale_uncertainty: combined relative standard uncertainty of magnification, Z_D, Gladstone-Dale constant, pixel
         pitch and thickness.
-    method: "wls" (least squares weighted by the uncertainty of the vectors) or "poisson" (no weights).
+    method: integration, as `--method` of `gladstone reconstruct`: by default least squares weighted by the uncertainty
+        of the vectors.
     overlap: overlap of the interrogation windows, from 0 to below 1; default: from the settings of the vectors.
     deconvolve: largest amplification by the compensation of the averaging over the aperture; None: no compensation.
     axis: Abel inversion of an axisymmetric flow: "vertical" or "horizontal", whose position is determined, or "x=1.5",
         "y=-2" in mm.
-    abel, lambda_: inversion "direct" or "tikhonov", and its regularisation parameter, default by cross-validation.
+    abel, lambda_: Abel inversion, as `--abel` of `gladstone reconstruct`, and the parameter of a regularised one,
+        default by cross-validation.
     samples: number of random samples, 10 to 100000, for the uncertainty of large grids.
     budget: splits the error of a rendered case into its causes.
     conventions: conventions of a file of vectors of another program.
 
-    Raises `SetupError` for options and setups that determine no density, and `DataError` for vectors.
+    Raises `SetupError` if the options and the setup do not determine a density, and `DataError` for unsuitable vectors.
     """
-    check_choice("method", method, ("wls", "poisson"))
-    check_choice("abel", abel, ("direct", "tikhonov"))
+    check_choice("method", method, _core.integration_methods())
+    check_choice("abel", abel, _core.abel_methods())
     check_whole("samples", samples, 10, 100_000)
     inputs = InputFolder()
     folder = inputs.name
@@ -179,7 +185,7 @@ def reconstruct(
             vectors = vectors_place(folder, source.correlate(device=device))
         core = _core.reconstruct(
             place, vectors, conventions, reference_texts(reference), reference_density, reference_sigma,
-            scale_uncertainty, method == "wls", overlap, deconvolve, axis, abel == "tikhonov", lambda_, samples, budget,
+            scale_uncertainty, method, overlap, deconvolve, axis, abel, lambda_, samples, budget,
             device, report,
         )  # fmt: skip
     return Density(core, inputs)

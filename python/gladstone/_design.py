@@ -1,4 +1,4 @@
-"""Design of set-ups by closed forms, verified by simulation."""
+"""Design of set-ups by formulas, with verification by simulation."""
 
 from __future__ import annotations
 
@@ -56,14 +56,15 @@ def design(
 ) -> Design:
     """Computes the design sheet of a setup. With a table [requirements], also recommends a set-up that meets them.
 
-    verify: number of best combinations to verify by rendering and correlation; 0: closed forms only.
-    repeats: number of simulations of each of these combinations.
-    seed: seed of the random numbers of these simulations.
-    apply: file (TOML) to write the recommended setup to.
+    verify: number of best combinations that are verified by rendering and correlation; 0: formulas only.
+    repeats: number of simulations of each verified combination.
+    seed: seed of the random numbers of the simulations.
+    apply: file (TOML) to which the recommended setup is written.
     figures: folder for figures of the layout, the design map and the Pareto front.
     """
     check_choice("figure_format", figure_format, ("png", "svg", "pdf"))
-    for name, given, least, most in (("verify", verify, 0, 100), ("repeats", repeats, 2, 1000), ("seed", seed, 0, 2**62)):
+    for name, given, least, most in (("verify", verify, 0, 100), ("repeats", repeats, 2, 1000), ("seed", seed, 0,
+    2**62)):
         if given is not None:
             check_whole(name, given, least, most)
     with reporting(progress) as report:

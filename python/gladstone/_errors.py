@@ -25,8 +25,32 @@ def check_whole(name: str, given: int, least: int, most: int) -> None:
         raise ValueError(f"{name} must be a whole number from {least} to {most}, got {given!r}")
 
 
+class WarningText(str):
+    """Warning of a result, "place: text", with its parts as attributes."""
+
+    code: str
+    """Kind of the warning, such as "low_accuracy"; docs/reference/errors.md lists all."""
+    place: str
+    """File, "file:line", key path of the setup or argument that it is about; may be empty."""
+    text: str
+    """Description, with the remedy."""
+
+    def __new__(cls, code: str, place: str, text: str):
+        self = super().__new__(cls, f"{place}: {text}" if place else text)
+        self.code, self.place, self.text = code, place, text
+        return self
+
+    def __getnewargs__(self):
+        return self.code, self.place, self.text
+
+
 class GladstoneWarning(UserWarning):
-    """Warning about a setup, a rendering, a measurement or a comparison."""
+    """Warning about a setup, a rendering, a measurement or a comparison, with `code`, `place` and `text` as attributes;
+    see `WarningText`."""
+
+    def __init__(self, warning: WarningText):
+        super().__init__(warning)
+        self.code, self.place, self.text = warning.code, warning.place, warning.text
 
 
 class Error(Exception):
@@ -52,13 +76,18 @@ class Problem(NamedTuple):
     code: str
     """Kind of the problem, such as "unknown_key"; docs/reference/errors.md lists all."""
 
-    def __str__(self) -> str:
+    @property
+    def place(self) -> str:
+        """Location "file:line:column", or the key or argument; may be empty."""
         if self.file is None:
-            return self.text if not self.key or self.key in self.text else f"{self.key}: {self.text}"
-        place = self.file
-        if self.line is not None:
-            place += f":{self.line}" + (f":{self.column}" if self.column else "")
-        return f"{place}: {self.text}"
+            return self.key or ""
+        line = "" if self.line is None else f":{self.line}" + (f":{self.column}" if self.column else "")
+        return self.file + line
+
+    def __str__(self) -> str:
+        if self.file is None and self.key and self.key in self.text:  # no need to name it twice
+            return self.text
+        return f"{self.place}: {self.text}" if self.place else self.text
 
 
 _PLACE = re.compile(r"(?P<file>.*?)(?::(?P<line>\d+)(?::(?P<column>\d+))?)?\Z", re.DOTALL)
@@ -79,9 +108,10 @@ def _problem(where: str, text: str, key: str, code: str) -> Problem:
 
 class SetupError(Error, ValueError):
     """A setup with problems; `problems` lists them, `more` is the number of further ones. `file`, `line`, `column`, `key`,
-    `text` and `code` are those of the first problem."""
+    `place`, `text` and `code` are those of the first problem."""
 
     code = "invalid_value"
+    place: str = ""
     file: str | None = None
     line: int | None = None
     column: int | None = None
@@ -97,6 +127,7 @@ class SetupError(Error, ValueError):
         self.more = more
         if self.problems:
             self.file, self.line, self.column, self.key, self.text, self.code = self.problems[0]
+            self.place = self.problems[0].place
         text = "\n".join(str(problem) for problem in self.problems)
         super().__init__(f"{text}\nand {more} problems more" if more else text)
 
@@ -105,6 +136,8 @@ class SetupError(Error, ValueError):
 
 
 class _PlacedError(Error):
+    place: str
+    """File with line and column, name of the input, key path of the setup, or name of the argument."""
     file: str | None
     """File or name of the input with the problem; None if a key of the setup or an argument is wrong."""
     line: int | None
@@ -134,34 +167,35 @@ class _PlacedError(Error):
 
 
 class DataError(_PlacedError, ValueError):
-    """A file or an array that is missing, damaged or of unexpected content."""
+    """Error for a file or an array that is missing, damaged or of unexpected content."""
 
     code = "invalid_value"
 
 
 class NoValidVector(DataError):
-    """A displacement field without a single valid vector."""
+    """Error for a displacement field without a single valid vector."""
 
     code = "no_valid_vector"
 
 
 class OutOfMemory(DataError, MemoryError):
-    """A computation that needs more memory than is available."""
+    """Error for a computation that requires more memory than is available."""
 
     code = "memory"
 
 
 class OutputError(_PlacedError):
-    """A file that cannot be written."""
+    """Error for a file that cannot be written."""
 
     code = "output"
 
 
 class DeviceError(Error, RuntimeError):
-    """An accelerator that is absent, out of memory or failing."""
+    """Error for a GPU that is absent, out of memory or failing."""
 
     code = "device"
     file = line = column = key = None
+    place = ""
 
     def __init__(self, text: str):
         self.text = CalledFunction().message(text)
@@ -170,8 +204,8 @@ class DeviceError(Error, RuntimeError):
 
 @contextmanager
 def hidden_folder(folder: str) -> Iterator[None]:
-    """Context manager that raises exceptions about files of a temporary folder without the folder. A setup in it, which
-    the user gave as an object, has no file, line and column."""
+    """Context manager that removes the name of a temporary folder from exceptions. For a setup in this folder, which
+    the user gave as an object, file, line and column are removed as well."""
 
     def inside(file: str | None) -> bool:
         return file is not None and file.startswith(folder + os.sep)

@@ -1,4 +1,4 @@
-"""Displacement fields: files and exchange."""
+"""Displacement fields: reading, writing and conversion to other libraries."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._errors import check_whole
+from ._errors import WarningText, check_whole
 from ._images import filled, host_image
 
 
 class Field:
-    """Displacement vectors. On a complete grid, arrays have the shape [rows, columns], else [N].
+    """Displacement vectors. Arrays have the shape [rows, columns] if the vectors form a complete grid, else [N].
 
     Positions and displacements are in px: column x to the right, row y downwards, from 0 at the centre of the first
     pixel; displacements from frame a to frame b.
     """
 
     def __init__(self, x, y, u, v, sigma_u=None, sigma_v=None):
-        """Makes a field of arrays of equal size: positions and displacements [px], standard uncertainties [px].
+        """Creates a field from arrays of equal size: positions, displacements and standard uncertainties [px].
 
         A displacement that is NaN, or masked by numpy.ma, marks an invalid vector.
         """
@@ -39,9 +39,9 @@ class Field:
 
     @classmethod
     def of(cls, given) -> Field:
-        """Returns a field: of a `Field`, of arrays (x, y, u, v), of a table (pandas, or a dictionary) with columns x, y, u
-        and v or x_px, y_px, u_px and v_px, of an xarray data set, of dense displacements [rows, columns, 2] at every
-        pixel, or of the path of a file for `load`."""
+        """Creates a field from any of the following: a `Field`, arrays (x, y, u, v), a table (pandas, or a dictionary)
+        with columns x, y, u and v or x_px, y_px, u_px and v_px, an xarray data set, dense displacements [rows, columns,
+        2] at every pixel, or the path of a file that `load` reads."""
         if isinstance(given, Field):
             return given
         if given is None:
@@ -66,7 +66,8 @@ class Field:
 
     @classmethod
     def from_dense(cls, displacement, spacing_px: int = 1) -> Field:
-        """Makes a field of displacements [rows, columns, 2] or [2, rows, columns] at the pixels of an image [px]."""
+        """Creates a field from displacements [rows, columns, 2] or [2, rows, columns] at the pixels of an image [px].
+        `spacing_px` is the distance between these pixels."""
         dense = np.asarray(host_image(displacement), float)
         if dense.ndim == 3 and dense.shape[-1] != 2 and dense.shape[0] == 2:
             dense = np.moveaxis(dense, 0, -1)
@@ -80,14 +81,16 @@ class Field:
     def load(cls, path: str | os.PathLike, *, conventions: str = "", image_rows: int = 0) -> Field:
         """Reads a file of vectors: gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x, y, u, v.
 
-        conventions: conventions of the file, as for `gladstone compare --conventions`; default: those of its format.
+        conventions: conventions of the file, as for `gladstone compare --conventions`; default: the conventions of its
+            format.
         image_rows: number of rows of the image, required for files that count y upwards from its lower edge.
         """
         check_whole("image_rows", image_rows, 0, 1_000_000)
         return cls._of(_core.load_field(os.fspath(path), conventions, image_rows))
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes vectors in the format of the ending, as `gladstone convert` does: .h5, .csv, .nc, .mat, .dat, .vti, .vtp.
+        """Writes vectors in the format that the ending selects, as `gladstone convert` does: .h5, .csv, .nc, .mat,
+        .dat, .vti, .vtp.
 
         .nc (NetCDF in pivpy's schema, as `to_xarray`) and .vti require vectors on a grid.
         """
@@ -141,18 +144,18 @@ class Field:
 
     @property
     def status(self) -> np.ndarray:
-        """0 valid, 1 replaced, 2 masked, 3 invalid."""
+        """Validity of each vector: 0 valid, 1 replaced, 2 masked, 3 invalid."""
         array = self._core.array("status")
         return (np.zeros(len(self), np.uint8) if array is None else array).reshape(self.shape)
 
     @property
     def valid(self) -> np.ndarray:
-        """True for vectors that count in statistics (valid or replaced)."""
+        """True for vectors that are included in statistics (valid or replaced)."""
         return self.status <= 1
 
     @property
     def peak_ratio(self) -> np.ndarray:
-        """Highest over second correlation peak; NaN: not measured."""
+        """Ratio of the highest to the second highest correlation peak; NaN: not measured."""
         return self._array("peak_ratio")
 
     @property
@@ -162,7 +165,7 @@ class Field:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Settings of the correlation with every default; empty for vectors of other programs."""
+        """Settings of the correlation, including all defaults; empty for vectors of other programs."""
         return tomllib.loads(self._core.settings).get("correlate", {}) if self._core.settings else {}
 
     @property
@@ -178,13 +181,14 @@ class Field:
 
     @property
     def uncertainty_key(self) -> str:
-        """Key that selected this method, for example 'correlate.uncertainty = "auto"'; "": unknown."""
+        """Key of the setup that selected the uncertainty method, for example 'correlate.uncertainty = "auto"'; "":
+        unknown."""
         return self._core.uncertainty_key
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[WarningText]:
         """Warnings about the measurement."""
-        return list(self._core.warnings)
+        return self._core.warnings
 
     @property
     def device(self) -> str:
@@ -200,12 +204,12 @@ class Field:
         """Returns an xarray.Dataset in pivpy's schema: u, v and chc over (y, x, t), in px.
 
         Further variables: sigma_u, sigma_v, peak_ratio, status, u_raw, v_raw, correlation, reason, ambiguous. chc is 1
-        for vectors that count, else 0.
+        for valid and replaced vectors, else 0.
         """
         import xarray
 
         if len(self.shape) != 2:
-            raise ValueError("scattered vectors have no grid, which this schema needs")
+            raise ValueError("the vectors are scattered, but this schema requires a grid")
 
         def variable(values, units: str, long_name: str, standard_name: str | None = None):
             attributes = {"units": units, "long_name": long_name}

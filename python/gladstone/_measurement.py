@@ -1,5 +1,5 @@
-"""What the measurements of density, displacement and camera have in common: their text and warnings, and the files of
-their inputs."""
+"""Common parts of the measurements of density, displacement and camera: text, warnings, and temporary files for the
+inputs."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from ._calibration_case import CalibrationCase
 from ._case import Case
+from ._errors import WarningText
 from ._field import Field
 from ._setup import Setup, as_setup
 
@@ -21,7 +22,7 @@ Box = Sequence[float]
 
 
 class InputFolder:
-    """Temporary folder for the input files of a measurement, deleted with its last owner."""
+    """Temporary folder for the input files of a measurement; deleted when the last object that uses it is deleted."""
 
     def __init__(self):
         self.name = tempfile.mkdtemp(prefix="gladstone_")
@@ -29,17 +30,18 @@ class InputFolder:
 
 
 class Measurement:
-    """Measurement that was computed by the libraries of gladstone."""
+    """Base class of results that the compiled part of gladstone has computed."""
 
     def __init__(self, core, inputs: InputFolder | None = None):
-        """inputs: folder of files that the measurement was computed from; `save` checks and records their hashes."""
+        """inputs: folder with the files from which the measurement was computed; `save` checks and records their
+        hashes."""
         self._core = core
         self._inputs = inputs
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[WarningText]:
         """Warnings about the measurement."""
-        return list(self._core.warnings)
+        return self._core.warnings
 
     def __str__(self) -> str:
         return self._core.text()
@@ -77,7 +79,7 @@ def measured_case_place(folder: str, case: Case, name: str, device: str) -> str:
 def place_of(
     folder: str, setup: Setup | Mapping | Case | CalibrationCase | str | os.PathLike, name: str = "setup"
 ) -> str:
-    """Returns the CASE folder or the setup file of a case or a setup; what is in memory is written into `folder`."""
+    """Returns the CASE folder or the setup file of a case or a setup; data in memory are written into `folder`."""
     if isinstance(setup, (Case, CalibrationCase)):
         return case_place(folder, setup, name)
     if isinstance(setup, (Setup, Mapping)):

@@ -6,19 +6,21 @@ import logging
 import warnings
 
 from ._arguments import CalledFunction, calling_frames
-from ._errors import GladstoneWarning
+from ._errors import GladstoneWarning, WarningText
 
 _log = logging.getLogger("gladstone")
 
 
-def deliver(messages: list[tuple[bool, str]]) -> None:
+def deliver(messages: list[str]) -> None:
     """Called by the compiled part at the end of each call."""
-    for is_warning, text in messages:
-        if not is_warning:
-            _log.info(text)
+    for message in messages:
+        if not isinstance(message, WarningText):
+            _log.info(message)
             continue
         frame = calling_frames()[-1]
         registry = frame.f_globals.setdefault("__warningregistry__", {})
-        named = CalledFunction().message(text)
+        called = CalledFunction()
+        place = called.option(message.place) if message.place.startswith("--") else called.setting(message.place)
+        named = GladstoneWarning(WarningText(message.code, place or message.place, called.message(message.text)))
         module = frame.f_globals.get("__name__")
-        warnings.warn_explicit(named, GladstoneWarning, frame.f_code.co_filename, frame.f_lineno, module, registry)
+        warnings.warn_explicit(named, None, frame.f_code.co_filename, frame.f_lineno, module, registry)

@@ -1,4 +1,4 @@
-"""Figures by matplotlib, which is needed for these only."""
+"""Figures drawn by matplotlib, which is required only for these figures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def plot_report(report):
 
 
 def plot_field(field):
-    """Draws maps of both components of a displacement field with arrows, without the vectors that do not count."""
+    """Draws maps of both components of a displacement field with arrows; masked and invalid vectors are omitted."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 4), layout="constrained")
@@ -35,7 +35,8 @@ def plot_field(field):
 
 
 def _arrows(axis, field, most: int = 20) -> None:
-    """Draws arrows of valid vectors, at most about `most` along each direction, whose length is relative to the largest."""
+    """Draws arrows of valid vectors, at most about `most` along each direction. The length of an arrow is relative to
+    the largest vector."""
     if len(field.shape) == 2:
         every = tuple(slice(None, None, -(-size // most)) for size in field.shape)
     else:
@@ -46,7 +47,7 @@ def _arrows(axis, field, most: int = 20) -> None:
 
 
 def plot_statistics(statistics):
-    """Draws maps of mean and standard deviation over a sequence, u above v."""
+    """Draws maps of mean and standard deviation over a sequence: u in the upper row, v in the lower row."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(2, 2, figsize=(9.5, 8), layout="constrained")
@@ -78,7 +79,7 @@ def _largest(values, percentile: float = 100.0) -> float:
 
 
 def _map(figure, axis, position, values, title: str, limit: float) -> None:
-    """Draws values on a grid as cells, scattered ones as points; colours are symmetric about 0."""
+    """Draws values on a grid as cells and scattered values as points; the colour scale is symmetric about 0."""
     limit = limit if limit > 0 else 1.0
     x, y = position[..., 0], position[..., 1]
     style = {"cmap": "RdBu_r", "vmin": -limit, "vmax": limit}
@@ -119,7 +120,7 @@ def plot_three_components(result):
 
 
 def plot_volume(result):
-    """Draws the density in the three mid-planes of a volume, and for rendered cases the error below."""
+    """Draws the density in the three mid-planes of a volume, and below it the error for rendered cases."""
     import matplotlib.pyplot as plt
 
     rows = [("density", result.density, {"vmin": np.nanmin(result.density), "vmax": np.nanmax(result.density)})]
@@ -147,7 +148,7 @@ def _plane(figure, axis, x_mm, y_mm, values, title: str, style: dict, names=("x"
 
 
 def plot_density(result):
-    """Draws maps of a density and its uncertainty, and for a rendered case of the true density and the error."""
+    """Draws maps of a density and its uncertainty; for a rendered case, also of the true density and the error."""
     import matplotlib.pyplot as plt
 
     maps = [("density", result.density, {}), ("standard uncertainty", result.sigma, {"vmin": 0.0})]

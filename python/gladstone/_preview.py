@@ -1,4 +1,4 @@
-"""What can be seen of a setup before it is rendered: a part of its images, and its dot pattern."""
+"""Previews of a setup before it is rendered: a part of its images, and its dot pattern."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ._setup import Setup, as_setup
 
 
 class Preview:
-    """Part of the images of a camera, rendered alone; see `preview`."""
+    """Rendered part of the images of a camera; see `preview`."""
 
     def __init__(self, images: np.ndarray, first_px: tuple[int, int], at_gradient: bool, sources: int):
         self.images: np.ndarray = images
@@ -24,7 +24,7 @@ class Preview:
         self.first_px: tuple[int, int] = first_px
         """Column and row of the part's first pixel in the complete images [px]."""
         self.at_gradient: bool = at_gradient
-        """Whether the part is about the strongest density gradient in view; False: about the image centre."""
+        """True: the part is centred on the strongest density gradient in view; False: on the image centre."""
         self.sources: int = sources
         """Number of dots or particles that were traced."""
 
@@ -39,12 +39,12 @@ def preview(
 ) -> Any:
     """Renders 128 x 128 px about the strongest density gradient, or about the image centre, within seconds.
 
-    The pixels are those of the complete images to within the scatter of the rays, except for `camera.exposure =
-    "auto"`, which refers to this part.
+    The pixels equal those of the complete images to within the scatter of the rays, except that `camera.exposure =
+    "auto"` is determined from this part only.
 
     setup: a `Setup`, a dictionary of tables, or a setup file.
 
-    Returns a `Preview`; for a setup with several cameras a dictionary of them by name of the camera.
+    Returns a `Preview`; for a setup with several cameras, a dictionary of previews by name of the camera.
     """
     with reporting(progress) as report:
         rendered = _core.previews(as_setup(setup)._core, device, report)
@@ -56,7 +56,7 @@ def preview(
 
 
 def target(setup: Setup | Mapping[str, Any] | str | os.PathLike, path: str | os.PathLike) -> dict[str, Any]:
-    """Writes the dots that the renderer traces at their true scale, as `gladstone target`.
+    """Writes the dot pattern of the renderer at true scale, as `gladstone target` does.
 
     setup: setup of a BOS experiment or a calibration: a `Setup`, a dictionary of tables, or a setup file.
     path: .pdf or .svg with a scale bar, for printing, or .csv (x_mm,y_mm).

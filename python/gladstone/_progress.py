@@ -1,4 +1,4 @@
-"""Progress bars by tqdm, or lines on stderr without it."""
+"""Progress bars by tqdm; without tqdm, lines on stderr."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from contextlib import closing, contextmanager
 from typing import Any, Union
 
 Progress = Union[bool, Callable[[str, int, int], None]]
-"""True: a progress bar; False: none; a function (label, done, total): called at most ten times a second."""
+"""True: progress bar; False: no report of progress; a function (label, done, total): called at most ten times a
+second."""
 
 
 class _Bars:
-    """One bar for each computation that begins."""
+    """Progress report with one bar for each computation."""
 
     def __init__(self, tqdm):
         self._tqdm, self._number, self._bar = tqdm, 0, None
@@ -31,7 +32,7 @@ class _Bars:
 
 
 class _Lines:
-    """A line for each computation, for installations without tqdm."""
+    """Progress report with one line for each computation, for installations without tqdm."""
 
     def __init__(self):
         self._number = 0

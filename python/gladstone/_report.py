@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._errors import OutputError, hidden_folder
+from ._errors import OutputError, WarningText, hidden_folder
 
 
 def check_report_ending(path: str) -> None:
-    """Raises OutputError unless a report can have this name."""
+    """Raises OutputError unless a file name has the ending of a report."""
     if not path.endswith((".html", ".htm", ".md")):
         raise OutputError(path, "is not the name of a report: it must end in .html or .md")
 
 
 class Report:
-    """Errors of measured vectors, and their causes.
+    """Errors of measured vectors, and the causes of these errors.
 
     Arrays have the shape of the vectors, with a last axis for the components (u to the right, v downwards) in px.
     """
@@ -31,7 +31,8 @@ class Report:
 
     @property
     def errors(self) -> dict[str, Any]:
-        """Contents of errors.json: error measures against ray truth, theory and truth on the window, and the budget."""
+        """Contents of errors.json: error measures against ray truth, theory and truth averaged over the window, and the
+        error budget."""
         if self._errors is None:
             self._errors = json.loads(self._core.errors())
         return self._errors
@@ -59,9 +60,9 @@ class Report:
         return self.errors["budget"]["terms"]
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[WarningText]:
         """Warnings about the comparison."""
-        return list(self._core.warnings)
+        return self._core.warnings
 
     def _vectors(self, name: str) -> np.ndarray | None:
         array = self._core.array(name)
@@ -111,7 +112,7 @@ class Report:
 
     @property
     def flow_px(self) -> np.ndarray | None:
-        """Displacements by which the flow moves the particles. PIV only."""
+        """Displacements of the particles by the flow, without refraction. PIV only."""
         return self._vectors("flow_px")
 
     @property
@@ -120,7 +121,7 @@ class Report:
         return np.where(self.mask[..., np.newaxis], self.measured_px - self.truth_px, np.nan)
 
     def plot(self):
-        """Draws maps of truth, measurement and error, and the budget. Returns a matplotlib figure."""
+        """Draws maps of truth, measurement and error, and the error budget. Returns a matplotlib figure."""
         from ._plot import plot_report
 
         return plot_report(self)
@@ -130,7 +131,7 @@ class Report:
         return self._core.draw(os.fspath(folder), format)
 
     def to_html(self, path: str | os.PathLike = "report.html", *, device: str = "auto") -> str:
-        """Writes the report of `gladstone report`, one HTML file that works offline. Returns its findings.
+        """Writes the report of `gladstone report`, one HTML file that works offline. Returns the findings as text.
 
         The comparison is computed again for this report.
         """

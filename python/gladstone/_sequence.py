@@ -12,13 +12,13 @@ import numpy as np
 
 from . import _core
 from ._correlate import image_files, overrides
-from ._errors import DataError
+from ._errors import DataError, WarningText
 from ._field import Field
 from ._progress import Progress, reporting
 
 
 class Sequence:
-    """Displacement fields of a sequence and their statistics, in the folder to which they were written.
+    """Displacement fields of a sequence and their statistics, read from the folder to which they were written.
 
     `len(sequence)` is the number of pairs; `sequence[k]` reads the field of pair k, and iteration yields the fields of
     the pairs that were measured, one at a time.
@@ -26,6 +26,8 @@ class Sequence:
 
     def __init__(self, folder: str, result: dict[str, Any], temporary=None):
         self._folder, self._result, self._temporary = folder, result, temporary
+        for pair in result["pairs"]:
+            pair["warnings"] = [WarningText(**record) for record in pair.pop("warning_records")]
 
     @property
     def folder(self) -> str:
@@ -46,7 +48,8 @@ class Sequence:
 
     @property
     def statistics(self) -> dict[str, np.ndarray]:
-        """Arrays [rows, columns] of statistics.h5: x_px, y_px, count, u_mean_px, u_rms_px, uu_px2, ... (NaN: unknown)."""
+        """Statistics over the pairs as arrays [rows, columns] of statistics.h5: x_px, y_px, count, u_mean_px, u_rms_px,
+        uu_px2, ... (NaN: unknown)."""
         return _core.sequence_statistics(os.path.join(self._folder, "statistics.h5"))
 
     def dots(self, index: int) -> dict[str, np.ndarray]:
@@ -107,12 +110,12 @@ def correlate_sequence(
 ) -> Sequence:
     """Measures the displacement of every pair of a sequence of image files, and the statistics over the pairs.
 
-    images: a folder, a pattern "frames/*.tif", two patterns ["A_*.tif", "B_*.tif"], or a list of files.
+    images: a folder, a pattern such as "frames/*.tif", two patterns such as ["A_*.tif", "B_*.tif"], or a list of files.
     pairing: "pairs" (frame A and frame B of each instant), "reference" (the first image with each other one, for BOS)
         or "consecutive" (each image with the next one; method="tracking" then follows particles over four frames).
     output: folder for the vectors and statistics. The same call continues an interrupted run in it. Default: a
         temporary folder, which exists as long as the returned object.
-    config: TOML file with a table [correlate]; default: the defaults of all settings.
+    config: TOML file with a table [correlate]; default: all settings have their defaults.
     settings: window, overlap, method, ..., as for `correlate`.
 
     The files are equal to those of `gladstone correlate IMAGES -o OUTPUT/`. A pair that fails does not affect the

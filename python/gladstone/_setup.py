@@ -15,12 +15,12 @@ class Setup:
     """Setup of a BOS, PIV or calibration experiment; immutable.
 
     Keys and units are those of the setup file: lengths end in `_mm`, `_um` or `_px`, angles in `_deg`.
-    Wrong keys and values raise a `SetupError` at once, which lists all of them. What may still be added by `replace`
-    (keys that are required, files) and values that do not fit together are checked by `check` and `render`.
+    Wrong keys and values raise a `SetupError` at once, which lists all of them. Missing required keys and files, which
+    `replace` may still add, and values that contradict each other are reported by `check` and `render`.
     """
 
     def __init__(self, text: str = "", *, name: str = "setup", folder: str | os.PathLike | None = None):
-        """Makes a setup of TOML text.
+        """Creates a setup from TOML text.
 
         name: shown in messages.
         folder: directory to which relative file names in the text refer; default: the working directory.
@@ -46,7 +46,7 @@ class Setup:
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, folder: str | os.PathLike | None = None) -> Setup:
-        """Makes a setup of a dictionary of tables: `{"lens": {"f_number": 11}, ...}`."""
+        """Creates a setup from a dictionary of tables: `{"lens": {"f_number": 11}, ...}`."""
         return cls(_toml.document(tables), folder=folder)
 
     @property
@@ -60,17 +60,18 @@ class Setup:
             return False
 
     def replace(self, values: Mapping[str, Any]) -> Setup:
-        """Returns a setup with other values: `setup.replace({"lens.f_number": 16})`.
+        """Returns a setup with replaced values: `setup.replace({"lens.f_number": 16})`.
 
-        Keys that depend on each other are replaced together, best as a table: `{"medium.field": {"kind": ...}}`. A table
-        replaces the whole table, so that its other keys have their defaults.
+        Replace keys that depend on each other in one call, best as a table: `{"medium.field": {"kind": ...}}`. A given
+        table replaces the whole table of the setup, so that keys that it does not contain have their defaults.
         """
         core = self._core
         given = [f"{path}={_toml.value(value)}" for path, value in values.items()]
         return self._of(_core.SetupText(core.text, core.name, core.folder, [*core.overrides, *given]))
 
     def check(self) -> Setup:
-        """Checks the whole setup, with the files that it names, and returns it. Raises `SetupError` with all problems."""
+        """Checks the whole setup and the files to which it refers, and returns the setup. Raises `SetupError` with all
+        problems."""
         self._core.resolved()
         return self
 
@@ -83,13 +84,14 @@ class Setup:
         return tomllib.loads(self.to_toml())
 
     def resolved(self) -> dict[str, Any]:
-        """Returns the setup with every default. Several cameras: a dictionary by name of the camera."""
+        """Returns the setup with all defaults. For several cameras, returns a dictionary of setups by name of the
+        camera."""
         texts = self._core.resolved()
         tables = {camera: tomllib.loads(text) for camera, text in texts.items()}
         return tables.get("", tables)  # the name of a single camera is empty
 
     def __getitem__(self, path: str) -> Any:
-        """Returns the value of a key, given or default: `setup["lens.f_number"]`."""
+        """Returns the given or default value of a key: `setup["lens.f_number"]`."""
         value: Any = self.resolved()
         for part in path.split("."):
             if not isinstance(value, Mapping) or part not in value:
@@ -108,10 +110,9 @@ class Setup:
         device: "auto" (a GPU if there is one), "cpu" or "cuda".
         progress: True: a progress bar; or a function (label, done, total).
 
-        Returns a `Case` (BOS and PIV) or a `CalibrationCase`; for a setup with several cameras a dictionary of them
-        by name of the camera. Annotate the result for type checkers: `case: gs.Case = setup.render()`.
-        The images are equal bit by bit to those of `gladstone render`.
-        Raises `SetupError`, `DataError`, `DeviceError`.
+        Returns a `Case` (BOS and PIV) or a `CalibrationCase`; for a setup with several cameras, a dictionary of cases
+        by name of the camera. Annotate the result for type checkers: `case: gs.Case = setup.render()`. The images are
+        equal bit by bit to those of `gladstone render`. Raises `SetupError`, `DataError`, `DeviceError`.
         """
         from ._calibration_case import CalibrationCase
         from ._case import Case
@@ -146,7 +147,7 @@ def render(setup: Setup | Mapping[str, Any] | str | os.PathLike, **options) -> A
 
 
 def as_setup(given: Setup | Mapping[str, Any] | str | os.PathLike) -> Setup:
-    """Returns a setup, made of a dictionary or a file if necessary."""
+    """Returns a setup; a dictionary or a file is converted to a setup."""
     if isinstance(given, Setup):
         return given
     if isinstance(given, str) and "\n" in given:

@@ -1,4 +1,4 @@
-"""Displacement in three components from two cameras."""
+"""Three components of displacement from the vectors of two cameras."""
 
 from __future__ import annotations
 
@@ -80,12 +80,12 @@ class ThreeComponents(Measurement):
 
     @property
     def truth_mm(self) -> np.ndarray | None:
-        """[rows, columns, 3] true displacement of two cameras of one rendering [mm]."""
+        """[rows, columns, 3] true displacement [mm]; None unless both cameras belong to one rendering."""
         return self._core.array("truth")
 
     @property
     def error_mm(self) -> np.ndarray | None:
-        """[rows, columns, 3] displacement minus true displacement [mm]."""
+        """[rows, columns, 3] displacement minus true displacement [mm]; None without true displacement."""
         return None if self.truth_mm is None else self.displacement_mm - self.truth_mm
 
     @property
@@ -131,7 +131,7 @@ class ThreeComponents(Measurement):
 
 
 def _input(folder: str, name: str, source, dewarp: str, device: str) -> str:
-    """Returns the CASE folder or the file of vectors of one camera; what is in memory is written into `folder`."""
+    """Returns the CASE folder or the file of vectors of one camera; data in memory are written into `folder`."""
     if not isinstance(source, Case):
         return vectors_place(folder, source, name)
     return measured_case_place(folder, source, name, device) if dewarp == "vectors" else case_place(folder, source, name)
@@ -161,13 +161,16 @@ def stereo(
         cases of two cameras by name, as `Setup.render` returns them, or the path of their common folder.
     calibrations: calibration.h5 of both cameras; required for vectors without a case. Default: the exact cameras.
     sheet_z_mm, sheet_slope: Z of the middle of the laser sheet at X = Y = 0 [mm], and its slopes dZ/dX and dZ/dY.
-    align: determines the laser sheet from the disparity between the images of both cameras, from that first guess.
-    images: images for the disparity, of the first and of the second camera in turn; default: the frames of the cases.
-    dewarp: "vectors" combines vectors of the original images; "images" dewarps the frames of cases and correlates those.
+    align: determines the position of the laser sheet from the disparity between the images of both cameras; sheet_z_mm
+        and sheet_slope are the initial values.
+    images: images for the disparity, alternately of the first and of the second camera; default: the frames of the
+        cases.
+    dewarp: "vectors" combines vectors of the original images; "images" first dewarps the frames of the cases and
+        correlates the dewarped frames.
     spacing_mm: distance between the nodes [mm]; None: mean distance of the vectors.
-    window_px: size of the interrogation windows, which correlates the errors of neighbouring vectors [px]; 0:
-        independent errors; None: the last window of the correlation.
-    residual_limit: vectors with a larger residual, in standard uncertainties, are not valid; 0: accept all.
+    window_px: size of the interrogation windows [px], from which the correlation between the errors of neighbouring
+        vectors is computed; 0: independent errors; None: the last window of the correlation.
+    residual_limit: largest residual of a valid vector, in standard uncertainties; 0: all vectors are accepted.
     conventions: conventions of files of vectors of another program.
 
     Raises `SetupError` for invalid options, and `DataError` for files that are missing or do not fit together.

@@ -17,7 +17,8 @@ from ._setup import as_setup
 
 
 class Study:
-    """Study of any keys of a setup, computed case by case into a folder; can be interrupted and continued."""
+    """Parameter study over any keys of a setup. The cases are computed one by one and stored in a folder; an
+    interrupted study can be continued."""
 
     def __init__(
         self,
@@ -34,7 +35,7 @@ class Study:
         base: setup of all cases: a `Setup`, a dictionary of tables, or a setup file.
         axes: values by key path: `{"lens.f_number": [4, 8, 16], "geometry.z_d_mm": {"linear": [100, 1000, 10]}}`.
         repeats: number of cases per point, which differ in the random dots, rays and noise.
-        seed: random seed of the first repeat; those of further repeats are derived from it.
+        seed: random seed of the first repeat, from which the seeds of further repeats are derived.
         mode: "grid" (all combinations), "zip" (the first values of all axes, then the second ones, ...) or "sobol"
             (quasi-random samples of the ranges).
         samples: number of samples with "sobol".
@@ -85,7 +86,8 @@ class Study:
         retry_failed: bool = False,
         progress: Progress = False,
     ) -> StudyRun:
-        """Plans the study and computes the missing cases. Returns the results; for the options see `StudyRun.compute`."""
+        """Plans the study and computes the missing cases. Returns the results; for the options see
+        `StudyRun.compute`."""
         run = self.plan(folder, device=device)
         run.compute(
             keep_images=keep_images, pairs_only=pairs_only, retry_failed=retry_failed, progress=progress
@@ -111,7 +113,7 @@ class StudyRun:
         """Computes the missing cases, as `gladstone sweep run`.
 
         keep_images: also write the images and all other files of each case.
-        pairs_only: compute only the images, which are kept: no correlation and no errors.
+        pairs_only: compute and keep only the images, without correlation and errors.
         retry_failed: compute failed cases again.
         cases: only these cases, by index: "17", or "0-3,7"; default: all.
         """
@@ -125,9 +127,9 @@ class StudyRun:
 
     @property
     def table(self) -> dict[str, np.ndarray]:
-        """Columns of study.csv by name, a value for each case; writes study.csv and study.h5 too.
+        """Returns the columns of study.csv by name, with one value for each case. Also writes study.csv and study.h5.
 
-        Axes are named by their key path, measures as in errors.json: "ray_truth.rms_px".
+        The name of an axis is its key path; the name of a measure is that in errors.json, such as "ray_truth.rms_px".
         """
         columns = {}
         for name, (values, labels, _) in _core.study_collect(self.folder).items():
@@ -142,8 +144,8 @@ class StudyRun:
 
     @property
     def ranking(self) -> list[dict[str, Any]]:
-        """Points in ascending order of each measure of the error: `measure`, `meaning`, and `points` with the index of
-        the first `case` and the mean `value` over its repeats."""
+        """Returns, for each measure of the error, the points of the study in ascending order: `measure`, `meaning`, and
+        `points` with the index of the first `case` and the mean `value` over the repeats."""
         return json.loads(_core.study_ranking(self.folder))
 
     def draw(self, folder: str | os.PathLike | None = None, formats: Sequence[str] = ("png", "svg")) -> list[str]:

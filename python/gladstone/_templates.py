@@ -21,9 +21,9 @@ class SetupKey(NamedTuple):
     default: str | None
     """Default as TOML; None: no default, or `default_words`."""
     default_words: str
-    """Default in words, "required" or "none"; empty: `default`."""
+    """Default in words, "required" or "none"; empty: see `default`."""
     required: bool
-    """True if the key has to be given."""
+    """True if the key is required."""
     values: str
     """Allowed values, in words."""
     meaning: str
@@ -36,7 +36,7 @@ def init(kind: str, path: str | os.PathLike | None = None, *, all_keys: bool = F
     """Returns a commented setup that runs as it is, equal to that of `gladstone init`.
 
     kind: "bos", "piv", "stereo", "calibration", "study" or "design".
-    path: new file to write the text to; default: none.
+    path: new file to which the text is also written; default: no file.
     all_keys: every key with its default, commented out, instead of the most important keys.
 
     Raises `DataError` for an unknown kind, and `OutputError` if the file exists.
@@ -52,7 +52,7 @@ def keys(pattern: str = "") -> list[SetupKey]:
     pattern: part of a key's path ("f_number", "medium.field"), or a whole path with wildcards ("camera.*_um"); default:
         all keys.
 
-    Raises KeyError, which names similar keys, if there is none.
+    Raises KeyError, which lists similar keys, if no key matches.
     """
     found = json.loads(_core.find_keys(pattern))
     if not found["keys"]:

@@ -1,4 +1,4 @@
-"""Density of a volume from the displacement of a few views."""
+"""Reconstruction of the density of a volume from the displacement in a few views."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ class Tomography(Measurement):
 
     @property
     def density(self) -> np.ndarray:
-        """Reconstructed density [kg/m^3]; the reference density where no view sees the node."""
+        """Reconstructed density [kg/m^3]; equals the reference density at nodes that no view sees."""
         return self._core.array("density")
 
     @property
     def views(self) -> np.ndarray:
-        """Number of views with a line of sight through the cells of each node."""
+        """Number of views with a line of sight through a cell adjacent to each node."""
         return self._core.array("views")
 
     @property
@@ -129,21 +129,23 @@ def tomography(
         cases.
     reference: region of the views whose lines of sight meet the reference density only: "left", "right", "top",
         "bottom" ("left:3" for three columns), a box (x0, y0, x1, y1) in mm, or a list of these. Required.
-    angles_deg: angle of the volume about Y in each view; empty: i / views of `arc_deg`.
-    reference_density: density there and outside of the volume [kg/m^3], default the ambient density.
-    bounds_mm: corners (x0, y0, z0, x1, y1, z1) of the volume; None: the part that all views see.
-    spacing_mm: distance between the nodes; None: that of the vectors.
+    angles_deg: angle by which the volume is turned about Y in each view; empty: view i has the angle `arc_deg` times i
+        / views.
+    reference_density: density in the reference region and outside of the volume [kg/m^3]; default: the ambient density.
+    bounds_mm: corners (x0, y0, z0, x1, y1, z1) of the volume; None: the part that is visible in all views.
+    spacing_mm: distance between the nodes; None: the distance between the vectors.
     support: "sphere:MM" or "cylinder:MM", outside of which the density is the reference density.
     least_density, largest_density: bounds of the density [kg/m^3].
     iterations, tolerance: largest number of sweeps over all views; the last one changes the volume by less than this
         fraction of its norm.
-    relaxation, tv_weight: fraction of each correction that is applied, and strength of the total variation relative to
-        the largest density difference; None: the rms change of a node by the views in each sweep.
+    relaxation: fraction of each correction that is applied.
+    tv_weight: strength of the total variation relative to the largest density difference; None: the rms change of a
+        node by the views in each sweep.
     ray_truth: uses the true displacement of the dots of rendered cases.
     conventions: conventions of files of vectors of another program.
     device: "cpu", "cuda", or "auto": the GPU if one is usable.
 
-    Raises `SetupError` for options, and `DataError` for views that determine no volume.
+    Raises `SetupError` for invalid options, and `DataError` for views that do not determine a volume.
     """
     if bounds_mm is not None and len(bounds_mm) != 6:
         raise ValueError(f"bounds_mm must be six numbers, got {len(bounds_mm)}")
@@ -169,14 +171,15 @@ def tomography(
 def tomography_setups(
     setup: Setup | str | os.PathLike, folder: str | os.PathLike, *, views: int = 8, arc_deg: float = 180.0
 ) -> list[str]:
-    """Writes setups of several views of one field, turned about Y, equal to those of `gladstone tomography --views`.
+    """Writes setups of several views of one field, in which the field is turned about Y. The files are equal to those
+    of `gladstone tomography --views`.
 
     setup: a `Setup` or its path, with a field of finite extent.
-    folder: for view_00.toml, view_01.toml, ... and the turned fields view_00.h5, ...
-    views, arc_deg: number of views, 3 to 16, at the angles i / views of `arc_deg`.
+    folder: folder to which view_00.toml, view_01.toml, ... and the turned fields view_00.h5, ... are written.
+    views, arc_deg: number of views, 3 to 16; view i has the angle `arc_deg` times i / views.
 
     Returns the paths of the setups. Render each of them, and give the cases to `tomography`.
-    Raises `SetupError` for invalid options, and setups without a field of finite extent.
+    Raises `SetupError` for invalid options, and for setups without a field of finite extent.
     """
     check_whole("views", views, 3, 16)
     os.makedirs(folder, exist_ok=True)
@@ -207,7 +210,7 @@ def reconstruct_lines(
     value: [lines] line integral of a quantity [its unit times m]; NaN: not measured.
     view: [lines] index of the view, ascending from 0.
     nodes, spacing_mm, center_mm: number of nodes along x, y and z, their distance, and the centre of the volume.
-    bounds: smallest and largest value, an interval that contains 0.
+    bounds: smallest and largest value of the volume; the interval must contain 0.
 
     Returns [nz, ny, nx] values. Raises `SetupError` for settings, and `DataError` for lines.
     """

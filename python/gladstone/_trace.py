@@ -16,15 +16,15 @@ class TracedRays:
 
     def __init__(self, status: list[str], numbers: np.ndarray):
         self.status: np.ndarray = np.array(status)
-        """[N] "alive", "vignetted", "missed_sensor", "total_internal_reflection", ..."""
+        """[N] status of each ray: "alive", "vignetted", "missed_sensor", "total_internal_reflection", ..."""
         self.position_mm: np.ndarray = numbers[:, 0:3]
         """[N, 3] end point in world coordinates [mm]."""
         self.direction: np.ndarray = numbers[:, 3:6]
-        """[N, 3] unit vector."""
+        """[N, 3] direction at the end point, a unit vector."""
         self.optical_path_mm: np.ndarray = numbers[:, 6]
         """[N] length of the optical path from the start [mm]."""
         self.pixel: np.ndarray = numbers[:, 7:9]
-        """[N, 2] column and row on the sensor [px]."""
+        """[N, 2] column and row at which the ray meets the sensor [px]."""
 
     def __len__(self) -> int:
         return len(self.status)
@@ -39,7 +39,7 @@ def trace(setup, start_mm, direction, *, through: Literal["medium", "optics", "a
     setup: a `Setup`, a dictionary of tables, or a setup file.
     start_mm: [N, 3] start points in world coordinates [mm]: X to the right, Y upwards, Z towards the camera.
     direction: [N, 3] directions of any length.
-    through: where the rays end: behind the "medium", behind the "optics", or at the sensor ("all").
+    through: position at which the rays end: behind the "medium", behind the "optics", or at the sensor ("all").
     """
     check_choice("through", through, ("medium", "optics", "all"))
     start = np.asarray(start_mm, float).reshape(-1, 3)

@@ -25,7 +25,7 @@ def lens(
     """Describes a lens prescription (.toml, .zmx, .seq): cardinal points, pupils, spot sizes, distortion.
 
     glasses: glass catalogues (.agf) in addition to the built-in ones.
-    wavelength_nm: default: the primary wavelength of the file.
+    wavelength_nm: wavelength [nm]; default: the primary wavelength of the file.
     figure: path of a figure (.png, .svg) to draw.
     """
     catalogues = [os.fspath(one) for one in glasses]
@@ -42,9 +42,9 @@ def field(
 ) -> dict[str, Any]:
     """Describes a density or refractive-index field: nodes, spacing, extent [mm], extremes, steepest gradient.
 
-    dataset: name within the file.
-    axes: world axes in the order of the file, the slowest first, such as "zyx".
-    setup: setup file whose view the field should cover.
+    dataset: name of the dataset within the file.
+    axes: world axes in the order of the file's dimensions, slowest first, such as "zyx".
+    setup: setup file; also reports how much of its field of view the field covers.
     figure: path of a drawing of the three planes through its middle (.png, .svg, .pdf).
     """
     return json.loads(
@@ -66,7 +66,7 @@ def particles(setup) -> dict[str, Any]:
 
 
 def setup(given, *, figure: str | os.PathLike | None = None) -> dict[str, Any]:
-    """Describes what follows from a setup before rendering: magnification, view, blur, dots in view, time and memory.
+    """Describes a setup before it is rendered: magnification, view, blur, dots in view, time and memory.
 
     figure: path of a drawing of the layout (.png, .svg, .pdf).
     """
@@ -88,7 +88,8 @@ class Mie:
         self.polarization: np.ndarray = np.array(numbers["polarization"])[:, 1]
 
     def amplitudes(self, angle_deg) -> tuple[np.ndarray, np.ndarray]:
-        """Returns S1 and S2, the complex amplitudes for the field across and in the scattering plane.
+        """Returns S1 and S2, the complex amplitudes for an electric field perpendicular and parallel to the scattering
+        plane.
 
         angle_deg: scattering angles [deg]; 0 is forward.
         """
@@ -105,7 +106,7 @@ def mie(x: float, m: complex, *, figure: str | os.PathLike | None = None) -> Mie
     """Computes the light scattered by a sphere (Bohren & Huffman 1983).
 
     x: size parameter pi d n / lambda.
-    m: refractive index of the sphere over that of its surroundings, n + i k.
+    m: refractive index of the sphere relative to that of its surroundings, n + i k.
     figure: path of a polar plot (.png, .svg) to draw.
 
     Returns an object with q_ext, q_sca, q_back, g, and s11 and polarization over angle_deg.

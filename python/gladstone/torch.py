@@ -1,4 +1,4 @@
-"""Data sets for PyTorch whose images are rendered on the fly. Needs torch."""
+"""Data sets for PyTorch whose images are rendered on access. Requires torch."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from ._setup import as_setup
 
 
 class RenderedPairs(torch.utils.data.Dataset):
-    """Image pairs with exact displacement at every pixel; each item is rendered when it is asked for.
+    """Image pairs with exact displacement at every pixel; each item is rendered when it is accessed.
 
     Item i is (images, flow): images [2, rows, columns], float32 from 0 to 1; flow [2, rows, columns], float32 in px,
-    u to the right and v downwards. It depends on i alone, so that several workers and epochs give equal items.
+    u to the right and v downwards. Item i depends on i alone, so that several workers and epochs yield equal items.
 
     Example: random dots and a random density gradient for each item
 
@@ -40,9 +40,9 @@ class RenderedPairs(torch.utils.data.Dataset):
         seed: int = 0,
         device: str = "cpu",
     ):
-        """Makes a data set of `length` items.
+        """Describes a data set of `length` items.
 
-        setup: a `Setup`, a dictionary of tables, or a setup file, of BOS or PIV with one camera.
+        setup: a `Setup`, a dictionary of tables, or a setup file of a BOS or PIV experiment with one camera.
         vary: function of the index and a random generator that returns the keys to replace; the seeds of dots,
             particles and noise are replaced for every item.
         at: pixel to which the flow belongs: "a" (in frame a, as networks for optical flow are trained) or "mid".
@@ -106,7 +106,8 @@ class RenderedBatches(torch.utils.data.IterableDataset):
         seed: int = 0,
         device: str = "auto",
     ):
-        """Makes `length` batches of `batch_size` pairs; the other arguments are those of `gladstone.RenderedBatches`."""
+        """Describes `length` batches of `batch_size` pairs each; the other arguments are those of
+        `gladstone.RenderedBatches`."""
         self.batches = _batches.RenderedBatches(setup, batch_size, vary, length=length, seed=seed, device=device)
 
     def __len__(self) -> int:

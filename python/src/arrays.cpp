@@ -1,50 +1,58 @@
 #include "python/src/arrays.h"
 
+#include <optional>
+
 #include "render/base/error.h"
 
 namespace gladstone::python {
 namespace {
 
-template <class T>
-Image<double> copied(ImageArray const& array) {
-  auto const rows = array.shape(0), columns = array.shape(1);
-  Image<double> image(static_cast<int>(columns), static_cast<int>(rows));
-  auto const* const first = static_cast<T const*>(array.data());
-  double* to = image.data();
-  for (std::size_t row = 0; row < rows; ++row) {
-    T const* from = first + static_cast<std::int64_t>(row) * array.stride(0);
-    for (std::size_t column = 0; column < columns; ++column, from += array.stride(1)) {
-      *to++ = static_cast<double>(*from);
-    }
+std::optional<SampleKind> kind_of_samples(nb::dlpack::dtype const& type) {
+  if (type.lanes != 1) return std::nullopt;
+  switch (static_cast<nb::dlpack::dtype_code>(type.code)) {
+    case nb::dlpack::dtype_code::Bool:
+      return SampleKind::boolean;
+    case nb::dlpack::dtype_code::UInt:
+      return SampleKind::unsigned_integer;
+    case nb::dlpack::dtype_code::Int:
+      return SampleKind::signed_integer;
+    case nb::dlpack::dtype_code::Float:
+      return SampleKind::floating_point;
+    default:
+      return std::nullopt;
   }
-  return image;
 }
 
 }  // namespace
 
-GivenImage read_array(ImageArray const& array, std::string const& name) {
-  constexpr std::size_t largest = 1u << 20;
-  if (array.shape(0) == 0 || array.shape(1) == 0 || array.shape(0) > largest || array.shape(1) > largest) {
+ImageSamples described_image(ImageSamples samples, nb::dlpack::dtype type, std::string const& name) {
+  constexpr std::int64_t largest = 1 << 20;
+  if (samples.rows == 0 || samples.columns == 0 || samples.rows > largest || samples.columns > largest) {
     throw DataError(ErrorCode::wrong_shape, name,
-                    "has " + std::to_string(array.shape(0)) + " x " + std::to_string(array.shape(1)) +
+                    "has " + std::to_string(samples.rows) + " x " + std::to_string(samples.columns) +
                         " pixels; give an image [rows, columns]");
   }
-  nb::dlpack::dtype const type = array.dtype();
-  int const bits = type.bits;
-  if (type == nb::dtype<bool>()) return {copied<bool>(array), bits};
-  if (type == nb::dtype<std::uint8_t>()) return {copied<std::uint8_t>(array), bits};
-  if (type == nb::dtype<std::uint16_t>()) return {copied<std::uint16_t>(array), bits};
-  if (type == nb::dtype<std::uint32_t>()) return {copied<std::uint32_t>(array), bits};
-  if (type == nb::dtype<std::uint64_t>()) return {copied<std::uint64_t>(array), bits};
-  if (type == nb::dtype<std::int8_t>()) return {copied<std::int8_t>(array), bits};
-  if (type == nb::dtype<std::int16_t>()) return {copied<std::int16_t>(array), bits};
-  if (type == nb::dtype<std::int32_t>()) return {copied<std::int32_t>(array), bits};
-  if (type == nb::dtype<std::int64_t>()) return {copied<std::int64_t>(array), bits};
-  if (type == nb::dtype<float>()) return {copied<float>(array), bits};
-  if (type == nb::dtype<double>()) return {copied<double>(array), bits};
+  std::optional<SampleKind> const kind = kind_of_samples(type);
+  samples.kind = kind.value_or(SampleKind::boolean);
+  samples.bits = kind ? type.bits : 0;
+  if (visit_sample_type(samples, [](auto) {})) return samples;
   throw DataError(ErrorCode::wrong_type, name,
                   "has samples of a type that is neither an integer of 8 to 64 bits nor a 32- or 64-bit float; "
                   "convert it, for example with image.astype(numpy.float32)");
+}
+
+Image<double> read_samples(ImageSamples const& samples) {
+  Image<double> image(static_cast<int>(samples.columns), static_cast<int>(samples.rows));
+  visit_sample_type(samples, [&](auto type) {
+    auto const* const first = static_cast<decltype(type) const*>(samples.first);
+    double* to = image.data();
+    for (std::int64_t row = 0; row < samples.rows; ++row) {
+      auto const* from = first + row * samples.row_step;
+      for (std::int64_t column = 0; column < samples.columns; ++column, from += samples.column_step)
+        *to++ = static_cast<double>(*from);
+    }
+  });
+  return image;
 }
 
 }  // namespace gladstone::python

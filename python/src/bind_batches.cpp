@@ -28,7 +28,7 @@ class PairBatches {
     LevelType const levels = level_type(type);
     return array([&] { return renderer_->render(given, levels); }, seeds.size(), levels);
   }
-  /// @return float32 [models, 2, rows, columns]
+  /// Computes the displacement at every pixel. @return float32 [models, 2, rows, columns]
   nb::object displacement() {
     return array([&] { return renderer_->displacement(); }, count_, LevelType::float32);
   }
@@ -42,7 +42,7 @@ class PairBatches {
                     "is \"" + name + "\"; use \"float32\", \"uint8\" or \"uint16\"");
   }
 
-  /// Returns the array that `compute` fills, where it is.
+  /// Returns the array that `compute` fills, in the memory of its device.
   template <class Compute>
   nb::object array(Compute const& compute, std::size_t first, LevelType type) const {
     auto const [buffer, gpu] = run([&] {
@@ -79,12 +79,13 @@ struct PairModels {
 
 void bind_batches(nb::module_& module) {
   nb::class_<PairModels>(module, "PairModels", "Models of the pairs of a batch.");
-  nb::class_<PairBatches>(module, "PairBatches", "Renders batches of PIV pairs on a device, where they remain.")
+  nb::class_<PairBatches>(module, "PairBatches",
+                          "Renders batches of PIV pairs on a device; the results remain in its memory.")
       .def("render", &PairBatches::render, nb::arg("seeds"), nb::arg("dtype"),
            "Grey levels [pairs, 2, rows, columns] of pairs with the seeds (particles, noise).")
       .def("displacement", &PairBatches::displacement,
            "Displacement at every pixel of frame a, float32 [models, 2, rows, columns].");
-  nb::class_<PairSource>(module, "PairSource", "Setup of which pairs are rendered with other values of some keys.")
+  nb::class_<PairSource>(module, "PairSource", "Setup from which pairs are rendered with replaced values of some keys.")
       .def("__init__",
            [](PairSource* self, SetupText const& setup, std::string const& device) {
              new (self) PairSource(run([&] { return PairSource(setup.document(), setup.name, device); }));

@@ -1,12 +1,13 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <spdlog/spdlog.h>
 
 #include <nlohmann/json.hpp>
 
 #include "python/src/arrays.h"
 #include "python/src/call.h"
+#include "python/src/warnings.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/calibrate.h"
 
 namespace gladstone::python {
@@ -14,7 +15,7 @@ namespace {
 
 Calibration calibrate(std::string const& place, std::vector<std::string> const& images) {
   Calibration calibration = images.empty() ? calibrate_case(place) : calibrate_images(place, images);
-  for (std::string const& warning : calibration.warnings) spdlog::warn("{}", warning);
+  log_warnings(calibration.warnings);
   return calibration;
 }
 
@@ -38,7 +39,7 @@ nb::object calibration_array(nb::handle_t<Calibration> self, std::string const& 
 
 void bind_calibration(nb::module_& module) {
   nb::class_<Calibration>(module, "Calibration", "Camera models fitted to images of a dot grid.")
-      .def_ro("warnings", &Calibration::warnings)
+      .def_prop_ro("warnings", [](Calibration const& self) { return warning_texts(self.warnings); })
       .def("array", &calibration_array, nb::arg("name"))
       .def("json", [](Calibration const& self) { return json_text(calibration_json(self)); })
       .def("text", [](Calibration const& self) { return calibration_table(self); })

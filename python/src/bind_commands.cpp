@@ -1,7 +1,6 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <spdlog/spdlog.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "python/src/call.h"
 #include "python/src/setup_text.h"
 #include "render/base/units.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/backend.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
@@ -17,6 +17,7 @@
 #include "studies/case/plenoptic_views.h"
 #include "studies/case/preview.h"
 #include "studies/case/render_sequence.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/convert.h"
 #include "studies/commands/init.h"
 #include "studies/commands/keys.h"
@@ -38,7 +39,7 @@ std::vector<CameraPreview> render_previews(SetupText const& setup, std::string c
   std::vector<CameraPreview> previews;
   for (CameraCase& camera : camera_cases(setup.document())) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
-    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    log_warnings(loaded.warnings);
     previews.push_back({camera.name, render_preview(loaded, *device.renderer)});
   }
   return previews;
@@ -64,8 +65,8 @@ std::string render_sequence(std::string const& setup, std::vector<std::string> c
   SequenceRenderer sequence(read_setup_document(setup, overrides), setup);
   sequence.refuse_over_inputs(folder);
   RenderedSequence const rendered = sequence.render(*open_device(device_name).renderer, folder, true);
-  for (std::string const& warning : rendered.warnings) spdlog::warn("{}", warning);
-  return json_text(rendered.summary);
+  log_warnings(rendered.warnings);
+  return rendered.summary;
 }
 
 /// Measures all oracles. @return (name, source, measured, exact, tolerance, tolerance is relative, passed) of each
@@ -82,7 +83,8 @@ nb::list oracles(std::string const& device, nb::handle progress) {
 std::string convert(VectorConversion const& conversion) {
   ConvertedVectors const converted = convert_vectors(conversion);
   if (!converted.complete)
-    spdlog::warn("{}: its header declares another number of vectors; export it again", conversion.input);
+    log_warning(
+        {WarningCode::incomplete, conversion.input, "its header declares another number of vectors; export it again"});
   return converted.description.json;
 }
 
@@ -104,7 +106,7 @@ void bind_setup_commands(nb::module_& module) {
       "find_keys",
       [](std::string const& pattern) {
         FoundKeys const found = find_keys(pattern);
-        return json_text(nlohmann::ordered_json{{"keys", found.keys}, {"similar", found.similar}});
+        return json_text(nlohmann::ordered_json{{"keys", keys_json(found)}, {"similar", found.similar}});
       },
       nb::arg("pattern"));
   module.def(

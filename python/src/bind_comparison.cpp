@@ -1,7 +1,7 @@
+#include <fmt/format.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -9,17 +9,20 @@
 #include "python/src/call.h"
 #include "python/src/case.h"
 #include "python/src/field.h"
+#include "python/src/warnings.h"
 #include "render/base/error.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/comparison_warnings.h"
 #include "studies/compare/error_report.h"
+#include "studies/figures/comparison_figures.h"
 #include "studies/report/report.h"
 
 namespace gladstone::python {
 namespace {
 
-/// Returns whether the vectors were measured by gladstone on exactly the frames of the case.
+/// Returns whether gladstone is known to have measured the vectors on exactly the frames of the case.
 /// @throws DataError if the frames were exchanged
 bool is_own(PairCase const& one, MeasuredField const& field) {
   if (field.foreign || !field.settings) return false;
@@ -30,10 +33,10 @@ bool is_own(PairCase const& one, MeasuredField const& field) {
                     "was measured from the case's frame b to its frame a, so that every displacement has "
                     "the opposite sign; correlate case.a with case.b");
   }
-  spdlog::warn(
-      "{}: the vectors were not measured on the frames of this case as they were rendered; the error of the estimator "
-      "includes that of noise",
-      field.name);
+  log_warning({WarningCode::inconsistent, field.name,
+               fmt::format("the vectors {} measured on the frames of this case as they were rendered; the error of the "
+                           "estimator includes that of noise",
+                           named ? "were not" : "may not have been")});
   return false;
 }
 
@@ -61,9 +64,9 @@ Comparison compare(PairCase& one, MeasuredField const& field, bool at_reference,
   Comparison comparison =
       compare_vectors(prepared, one.truth(), rendered, std::move(vectors), std::move(point), device, options.truth_at);
   comparison.warnings = comparison_warnings(comparison, one.loaded().setup);
-  for (std::string const& warning : comparison.warnings) {
+  for (Warning const& warning : comparison.warnings) {
     bool const told = std::find(prepared.warnings.begin(), prepared.warnings.end(), warning) != prepared.warnings.end();
-    if (!told) spdlog::warn("{}", warning);
+    if (!told) log_warning(warning);
   }
   return comparison;
 }
@@ -91,11 +94,10 @@ nb::object comparison_array(nb::handle_t<Comparison> self, std::string const& na
 std::string report(ReportOptions const& options, std::string const& device) {
   WrittenReport const written = write_report(options, open_device(device));
   for (std::string const& file : written.doubtful) {
-    spdlog::warn(
-        "{}: the vectors of this file are incomplete, or their axes and signs were probably misread, so that the "
-        "report "
-        "is doubtful (reasons above); export them again, or state their axes and signs with conventions",
-        file);
+    log_warning(
+        {WarningCode::unreliable, file,
+         "the vectors of this file are incomplete, or their axes and signs were probably misread, so that the report "
+         "is doubtful (reasons above); export them again, or state their axes and signs with conventions"});
   }
   return written.findings;
 }
@@ -106,7 +108,7 @@ void bind_comparison(nb::module_& module) {
   nb::class_<Comparison>(module, "Comparison", "Vectors compared with truth and theory.")
       .def_prop_ro("columns", [](Comparison const& self) { return self.measured.columns; })
       .def_prop_ro("rows", [](Comparison const& self) { return self.measured.rows; })
-      .def_ro("warnings", &Comparison::warnings)
+      .def_prop_ro("warnings", [](Comparison const& self) { return warning_texts(self.warnings); })
       .def("array", &comparison_array, nb::arg("name"))
       .def("errors", [](Comparison const& self) { return run([&] { return errors_json(self); }); })
       .def("text", [](Comparison const& self) { return run([&] { return error_report(self); }); })

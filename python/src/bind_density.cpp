@@ -6,8 +6,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "analysis/density/density_methods.h"
 #include "python/src/arrays.h"
 #include "python/src/call.h"
+#include "python/src/warnings.h"
 #include "studies/case/json_text.h"
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"
@@ -29,7 +31,8 @@ nb::object axis_mm(Reconstruction const& self, bool along_x) {
   return array_of(std::move(axis), {count});
 }
 
-/// Returns one field of the reconstruction by name, [rows, columns] or [rows, columns, 2]; None if it does not exist.
+/// Returns one quantity of the reconstruction by name, [rows, columns] or [rows, columns, 2]; None if it does not
+/// exist.
 nb::object density_array(nb::handle_t<Reconstruction> self, std::string const& name) {
   Reconstruction const& all = nb::cast<Reconstruction&>(self);
   auto const rows = static_cast<std::size_t>(all.grid.rows), columns = static_cast<std::size_t>(all.grid.columns);
@@ -50,7 +53,7 @@ nb::object density_array(nb::handle_t<Reconstruction> self, std::string const& n
 
 void bind_density(nb::module_& module) {
   nb::class_<Reconstruction>(module, "Reconstruction", "Density reconstructed from BOS vectors.")
-      .def_ro("warnings", &Reconstruction::warnings)
+      .def_prop_ro("warnings", [](Reconstruction const& self) { return warning_texts(self.warnings); })
       .def("x_mm", [](Reconstruction const& self) { return axis_mm(self, true); })
       .def("y_mm", [](Reconstruction const& self) { return axis_mm(self, false); })
       .def("array", &density_array, nb::arg("name"))
@@ -59,13 +62,16 @@ void bind_density(nb::module_& module) {
           nb::arg("path"))
       .def("summary", [](Reconstruction const& self) { return json_text(summarize_reconstruction(self)); })
       .def("text", [](Reconstruction const& self) { return reconstruction_report(self); });
+  module.def("integration_methods", [] { return density::method_names(density::integration_methods()); });
+  module.def("abel_methods", [] { return density::method_names(density::abel_methods()); });
   module.def(
       "reconstruct",
       [](std::string const& place, std::string const& vectors, std::optional<std::string> const& conventions,
          std::vector<std::string> const& reference, std::optional<double> reference_density, double reference_sigma,
-         double scale_uncertainty, bool weighted, std::optional<double> overlap, std::optional<double> deconvolve,
-         std::optional<std::string> const& axis, bool regularized, std::optional<double> lambda, std::size_t samples,
-         bool budget, std::string const& device, nb::handle progress) {
+         double scale_uncertainty, std::string const& method, std::optional<double> overlap,
+         std::optional<double> deconvolve, std::optional<std::string> const& axis, std::string const& abel,
+         std::optional<double> lambda, std::size_t samples, bool budget, std::string const& device,
+         nb::handle progress) {
         return run(
             [&] {
               ReconstructOptions options;
@@ -75,11 +81,11 @@ void bind_density(nb::module_& module) {
               options.reference_density = reference_density;
               options.reference_sigma = reference_sigma;
               options.scale_uncertainty = scale_uncertainty;
-              if (!weighted) options.method = density::IntegrationMethod::poisson;
+              options.method = method;
               options.overlap = overlap;
               options.deconvolution_gain = deconvolve;
               if (axis) options.axis = parse_axis(*axis);
-              if (regularized) options.abel = density::AbelMethod::tikhonov;
+              options.abel = abel;
               options.lambda = lambda;
               options.samples = samples;
               options.budget = budget;
@@ -88,10 +94,9 @@ void bind_density(nb::module_& module) {
             progress);
       },
       nb::arg("place"), nb::arg("vectors"), nb::arg("conventions").none(), nb::arg("reference"),
-      nb::arg("reference_density").none(), nb::arg("reference_sigma"), nb::arg("scale_uncertainty"),
-      nb::arg("weighted"), nb::arg("overlap").none(), nb::arg("deconvolve").none(), nb::arg("axis").none(),
-      nb::arg("regularized"), nb::arg("lambda_").none(), nb::arg("samples"), nb::arg("budget"), nb::arg("device"),
-      nb::arg("progress").none());
+      nb::arg("reference_density").none(), nb::arg("reference_sigma"), nb::arg("scale_uncertainty"), nb::arg("method"),
+      nb::arg("overlap").none(), nb::arg("deconvolve").none(), nb::arg("axis").none(), nb::arg("abel"),
+      nb::arg("lambda_").none(), nb::arg("samples"), nb::arg("budget"), nb::arg("device"), nb::arg("progress").none());
 }
 
 }  // namespace gladstone::python

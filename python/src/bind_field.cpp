@@ -13,9 +13,11 @@
 #include "python/src/arrays.h"
 #include "python/src/call.h"
 #include "python/src/field.h"
+#include "python/src/warnings.h"
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
+#include "studies/case/correlation_setup.h"
 #include "studies/case/peak_locking.h"
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/correlate.h"
@@ -25,37 +27,8 @@ namespace {
 
 using Field = std::shared_ptr<MeasuredField>;
 
-Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::string> const& overrides,
-                std::string const& device_name, nb::handle progress) {
-  return run(
-      [&] {
-        GivenImage reference = read_array(a, "a"), flow = read_array(b, "b");
-        HostFrames const frames(std::move(reference.image), std::move(flow.image));
-        CorrelationFile const given = default_correlation(overrides);
-        Backend const device = open_device(device_name);
-        auto field = std::make_shared<MeasuredField>();
-        Measurement measured = correlate_frames("a", "b", frames, given.settings, device);
-        if (std::string advice = locking_advice(frames.reference());
-            frames_correlate(measured.field) && !advice.empty())
-          measured.field.warnings.push_back(std::move(advice));
-        field->field = std::move(measured.field);
-        field->foreign = false;
-        field->settings = given.settings;
-        field->resolved = given.resolved;
-        field->device = measured.device;
-        field->seconds = measured.seconds;
-        field->reference_sha256 = pixel_sha256(frames.reference(), reference.sample_bits);
-        field->flow_sha256 = pixel_sha256(frames.flow(), flow.sample_bits);
-        return field;
-      },
-      progress);
-}
-
-/// Measures the displacement field common to many pairs. @param files  frames A and B of each pair in turn
-Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std::string> const& overrides) {
-  CorrelationFile const given = default_correlation(overrides);
-  SourceFiles sources;
-  Measurement measured = correlate_ensemble_files(files, given.settings, sources);
+/// Returns the field of a measurement with these settings.
+Field make_field(Measurement measured, CorrelationFile const& given) {
   auto field = std::make_shared<MeasuredField>();
   field->field = std::move(measured.field);
   field->foreign = false;
@@ -64,6 +37,45 @@ Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std:
   field->device = measured.device;
   field->seconds = measured.seconds;
   return field;
+}
+
+Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::string> const& overrides,
+                std::string const& device_name, nb::handle progress) {
+  return run(
+      [&] {
+        ImageSamples const samples_a = image_samples(a, "a"), samples_b = image_samples(b, "b");
+        HostFrames const frames(read_samples(samples_a), read_samples(samples_b));
+        CorrelationFile const given = default_correlation(overrides);
+        Measurement measured = correlate_frames("a", "b", frames, given.settings, open_device(device_name));
+        if (auto const advice = locking_advice(frames.reference()); advice && frames_correlate(measured.field))
+          measured.field.warnings.push_back(*advice);
+        Field field = make_field(std::move(measured), given);
+        field->reference_sha256 = pixel_sha256(frames.reference(), samples_a.bits);
+        field->flow_sha256 = pixel_sha256(frames.flow(), samples_b.bits);
+        return field;
+      },
+      progress);
+}
+
+/// Correlates images in the memory of the first GPU. Without a copy in host memory, the frames have no hashes, and the
+/// size of their dots is not examined.
+Field correlate_gpu_images(GpuImageArray const& a, GpuImageArray const& b, std::vector<std::string> const& overrides,
+                           std::string const& device_name, nb::handle progress) {
+  return run(
+      [&] {
+        CorrelationFile const given = default_correlation(overrides);
+        return make_field(correlate_gpu_arrays("a", image_samples(a, "a"), "b", image_samples(b, "b"), given.settings,
+                                               open_device(device_name)),
+                          given);
+      },
+      progress);
+}
+
+/// Measures the displacement field common to many pairs. @param files  frames A and B of each pair in turn
+Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std::string> const& overrides) {
+  CorrelationFile const given = default_correlation(overrides);
+  SourceFiles sources;
+  return make_field(correlate_ensemble_files(files, given.settings, sources), given);
 }
 
 /// Reads a file of vectors and converts it to our conventions.
@@ -87,6 +99,7 @@ Field load_field(std::string const& path, std::string const& conventions, int im
   Hdf5Reader const measured(path);
   field->resolved = measured.attribute("setup");
   field->device = measured.attribute("device");
+  field->field.warnings = read_warnings(measured);
   field->reference_sha256 = measured.attribute("reference_sha256");
   field->flow_sha256 = measured.attribute("flow_sha256");
   if (field->resolved.empty()) return field;
@@ -109,7 +122,7 @@ Field field_of_arrays(NumberArray const& x, NumberArray const& y, NumberArray co
     if (array.shape(0) == count) return;
     throw DataError(
         ErrorCode::wrong_shape, "field",
-        fmt::format("{} has {} values where x has {}; give one for each vector", name, array.shape(0), count));
+        fmt::format("{} has {} values, but x has {}; give one value for each vector", name, array.shape(0), count));
   };
   check(y, "y");
   check(u, "u");
@@ -175,7 +188,7 @@ void bind_field(nb::module_& module) {
       .def_prop_ro("size", [](MeasuredField const& self) { return self.field.size(); })
       .def_prop_ro("columns", [](MeasuredField const& self) { return self.field.columns; })
       .def_prop_ro("rows", [](MeasuredField const& self) { return self.field.rows; })
-      .def_prop_ro("warnings", [](MeasuredField const& self) { return self.field.warnings; })
+      .def_prop_ro("warnings", [](MeasuredField const& self) { return warning_texts(self.field.warnings); })
       .def_prop_ro("verdict", [](MeasuredField const& self) { return self.field.verdict; })
       .def_prop_ro("uncertainty_method", [](MeasuredField const& self) { return self.field.uncertainty_method; })
       .def_prop_ro("uncertainty_key", [](MeasuredField const& self) { return self.field.uncertainty_key; })
@@ -189,8 +202,11 @@ void bind_field(nb::module_& module) {
       .def(
           "save", [](MeasuredField const& self, std::string const& path) { run([&] { save(self, path); }); },
           nb::arg("path"));
+  module.def("gpu_is_usable", &gpu_is_usable, "Whether images in the memory of the first GPU can be correlated there.");
   module.def("correlate", &correlate, nb::arg("a"), nb::arg("b"), nb::arg("overrides"), nb::arg("device"),
              nb::arg("progress").none());
+  module.def("correlate_gpu_images", &correlate_gpu_images, nb::arg("a"), nb::arg("b"), nb::arg("overrides"),
+             nb::arg("device"), nb::arg("progress").none());
   module.def(
       "correlate_ensemble",
       [](std::vector<std::string> const& files, std::vector<std::string> const& overrides, nb::handle progress) {

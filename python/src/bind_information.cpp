@@ -1,6 +1,5 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <spdlog/spdlog.h>
 
 #include <complex>
 
@@ -13,6 +12,7 @@
 #include "render/planning.h"
 #include "studies/case/case.h"
 #include "studies/case/ray_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/figure_ending.h"
 #include "studies/commands/info_field.h"
 #include "studies/commands/info_image.h"
@@ -42,11 +42,10 @@ nb::object mie_amplitudes(double x, std::complex<double> m, NumberArray const& a
 std::vector<TracedRay> trace(SetupText const& setup, std::vector<double> const& rows, Through through) {
   CaseSetup loaded = load_case_setup(setup.document());
   std::vector<Ray<double>> const rays = rays_of(rows, "rays", loaded.setup.max_off_axis_distance());
-  for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
-  Scene scene = build_scene(loaded.setup);
-  for (std::string const& text : scene.medium.warnings) spdlog::warn("{}", text);
-  scene = with_chosen_step(std::move(scene));
-  return trace_rays(scene, rays, through);
+  log_warnings(loaded.warnings);
+  Scene const scene = build_scene(loaded.setup);
+  log_warnings(scene.medium.warnings);
+  return trace_rays(scene, plan_step(scene).step, rays, through);
 }
 
 nb::tuple traced_rays(SetupText const& setup, NumberArray const& numbers, std::string const& through) {
@@ -93,10 +92,12 @@ void bind_information(nb::module_& module) {
   module.def(
       "info_image",
       [](ImageArray const& array, int bit_depth) {
-        GivenImage const given = read_array(array, "image");
-        ImageMetadata metadata;
-        metadata.bit_depth = bit_depth > 0 ? bit_depth : given.sample_bits;
-        return run([&] { return describe_image("image", given.image, metadata).json; });
+        return run([&] {
+          ImageSamples const samples = image_samples(array, "image");
+          ImageMetadata metadata;
+          metadata.bit_depth = bit_depth > 0 ? bit_depth : samples.bits;
+          return describe_image("image", read_samples(samples), metadata).json;
+        });
       },
       nb::arg("image"), nb::arg("bit_depth"));
   module.def(

@@ -9,6 +9,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_json.h"
 #include "studies/compare/sequence.h"
 #include "studies/compare/sequence_frames.h"
 
@@ -31,7 +32,8 @@ std::string correlate_pairs(std::vector<std::string> const& inputs, std::string 
                     {"b", record.pair.flow.name()},
                     {"vectors", record.has_vectors() ? nlohmann::json(record.pair.vectors) : nullptr},
                     {"error", record.error},
-                    {"warnings", record.warnings},
+                    {"warnings", to_strings(record.warnings)},
+                    {"warning_records", record.warnings},
                     {"resumed", record.resumed}});
   }
   report_sequence(result, folder);

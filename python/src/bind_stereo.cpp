@@ -9,6 +9,7 @@
 
 #include "python/src/arrays.h"
 #include "python/src/call.h"
+#include "python/src/warnings.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "studies/case/json_text.h"
@@ -73,7 +74,7 @@ nb::object stereo_array(StereoMeasurement const& self, std::string const& name) 
 
 void bind_stereo(nb::module_& module) {
   nb::class_<StereoMeasurement>(module, "StereoMeasurement", "Displacement in three components.")
-      .def_ro("warnings", &StereoMeasurement::warnings)
+      .def_prop_ro("warnings", [](StereoMeasurement const& self) { return warning_texts(self.warnings); })
       .def("x_mm", [](StereoMeasurement const& self) { return node_axis_mm(self, true); })
       .def("y_mm", [](StereoMeasurement const& self) { return node_axis_mm(self, false); })
       .def("array", &stereo_array, nb::arg("name"))

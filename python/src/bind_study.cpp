@@ -1,7 +1,6 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <spdlog/spdlog.h>
 
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -10,6 +9,7 @@
 #include "python/src/call.h"
 #include "render/base/progress.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/figures/study_figures.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/dataset.h"
@@ -27,7 +27,7 @@ void plan(std::string const& study, std::string const& folder, std::string const
   check_plan_folder(folder, read);
   std::string const planned = device == "auto" ? open_device(device).name() : device;
   StudyPlan const plan = plan_study(std::move(read), planned);
-  for (std::string const& warning : plan.warnings()) spdlog::warn("{}", warning);
+  log_warnings(plan.warnings());
   write_plan(folder, plan);
 }
 
@@ -38,7 +38,8 @@ void compute(std::string const& folder, RunSelection const& selection) {
   std::size_t const due = remove_failed_results(folder, cases, selected, selection).missing.size();
   if (due == 0) return;
   Progress progress("cases", due);
-  ProgressMonitor of_cases;  // unread: the study reports whole cases
+  ProgressMonitor of_cases;  // receives the progress of the steps of a case, which is not shown: `progress` counts
+                             // whole cases
   ProgressMonitor::Scope const scope(of_cases);
   CaseRunner runner(open_device(cases[0].device));
   run_cases(folder, cases, selected, selection, computation_by(runner), 0, [&](std::size_t, CaseEvent event) {

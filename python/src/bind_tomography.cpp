@@ -9,6 +9,7 @@
 
 #include "python/src/arrays.h"
 #include "python/src/call.h"
+#include "python/src/warnings.h"
 #include "render/base/error.h"
 #include "render/base/units.h"
 #include "studies/case/backend.h"
@@ -91,7 +92,7 @@ std::vector<tomography::ProjectedView> split_lines(PointArray const& origin_mm, 
 
 void bind_tomography(nb::module_& module) {
   nb::class_<Tomography>(module, "Tomography", "Density of a volume, reconstructed from several views.")
-      .def_ro("warnings", &Tomography::warnings)
+      .def_prop_ro("warnings", [](Tomography const& self) { return warning_texts(self.warnings); })
       .def("axis_mm", &volume_axis_mm, nb::arg("axis"))
       .def("array", &volume_array, nb::arg("name"))
       .def(

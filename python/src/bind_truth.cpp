@@ -37,7 +37,7 @@ nb::object flow(PairCase& self, bool at_frame_a, int spacing_px, bool exact, std
   Image<Vec2d> const map = run(
       [&] {
         Backend const device = open_device(device_name);
-        return displacement_truth(self.prepared().scene, *device.renderer,
+        return displacement_truth(self.prepared().scene, self.prepared().plan, *device.renderer,
                                   at_frame_a ? TruthAt::reference : TruthAt::mid_position, spacing_px,
                                   exact ? TracedPixels::all : TracedPixels::adaptive);
       },

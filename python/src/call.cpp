@@ -11,10 +11,13 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
+#include "python/src/warnings.h"
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone::python {
 namespace {
@@ -22,14 +25,15 @@ namespace {
 /// Messages logged during one call.
 class CallMessages {
  public:
-  void add(spdlog::level::level_enum level, std::string text) {
+  /// @param message  a warning, or the text of another message
+  void add(std::variant<Warning, std::string> message) {
     std::lock_guard const lock(mutex_);
-    all_.emplace_back(level, std::move(text));
+    all_.push_back(std::move(message));
   }
 
-  /// Hands the messages to Python. @pre the GIL is held
+  /// Passes the messages to Python. @pre the GIL is held
   void deliver() {
-    std::vector<std::pair<spdlog::level::level_enum, std::string>> all;
+    std::vector<std::variant<Warning, std::string>> all;
     {
       std::lock_guard const lock(mutex_);
       all.swap(all_);
@@ -37,19 +41,21 @@ class CallMessages {
     if (all.empty()) return;
     nb::object const deliver_to_python = nb::module_::import_("gladstone._messages").attr("deliver");
     nb::list messages;
-    for (auto const& [level, text] : all) {
-      messages.append(nb::make_tuple(level >= spdlog::level::warn, nb::str(text.data(), text.size())));
+    for (auto const& message : all) {
+      auto const* const text = std::get_if<std::string>(&message);
+      messages.append(text ? nb::object(nb::str(text->data(), text->size()))
+                           : warning_text(std::get<Warning>(message)));
     }
     deliver_to_python(messages);
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::pair<spdlog::level::level_enum, std::string>> all_;
+  std::vector<std::variant<Warning, std::string>> all_;
 };
 
-/// Messages of threads that belong to no call, such as workers of a parallel loop; the next call that ends delivers
-/// them.
+/// Returns the messages of threads that belong to no call, such as workers of a parallel loop. The call that ends next
+/// delivers them.
 CallMessages& unassigned_messages() {
   static CallMessages all;
   return all;
@@ -61,7 +67,11 @@ class PythonSink final : public spdlog::sinks::base_sink<std::mutex> {
  private:
   void sink_it_(spdlog::details::log_msg const& message) override {
     CallMessages& all = messages_of_thread ? *messages_of_thread : unassigned_messages();
-    all.add(message.level, std::string(message.payload.data(), message.payload.size()));
+    if (Warning const* const warning = warning_being_logged()) {
+      all.add(*warning);
+    } else {
+      all.add(std::string(message.payload.data(), message.payload.size()));
+    }
   }
   void flush_() override {}
 };
@@ -128,7 +138,7 @@ void run_released(std::function<void()> const& work, nb::handle progress) {
   Call call;
   running_calls.begin();
   std::thread thread(run_work, std::ref(call), std::cref(work));
-  std::optional<nb::python_error> raised;  // by a signal handler or by `progress`
+  std::optional<nb::python_error> raised;  // exception raised by a signal handler or by `progress`
   auto const handle_signals_and_progress = [&] {
     if (raised) return;
     try {

@@ -37,7 +37,7 @@ auto run(Work&& work, nb::handle progress = nb::none()) {
 /// Registers the translation of C++ exceptions to those of gladstone._errors.
 void translate_errors();
 
-// One function for each topic of the module.
+// Functions that define the contents of the module, one for each topic.
 void bind_setup(nb::module_& module);
 void bind_case(nb::module_& module);
 void bind_truth(nb::module_& module);

@@ -14,7 +14,7 @@
 namespace gladstone::python {
 namespace {
 
-/// Fills a CASE folder by `write`; all files are written, or none.
+/// Writes the files of a CASE folder by calling `write`; either all files are written, or none.
 template <class Write>
 void write_folder(std::string const& folder, CaseSetup const& loaded, Write const& write) {
   refuse_case_over_inputs(folder, loaded.document.file_names());
@@ -46,8 +46,8 @@ PairCase::PairCase(std::string folder)
   outcome_.accuracy = truth_accuracy(stored_truth_, truth_tolerance_px);
   store_images(levels);
   summary_ = read_text_file(in_case(folder_, case_file::summary));
-  auto const levels = nlohmann::json::json_pointer("/image_error/levels");
-  nlohmann::json const stored = nlohmann::json::parse(summary_).value(levels, nlohmann::json());
+  nlohmann::json::json_pointer const image_error("/image_error/levels");
+  nlohmann::json const stored = nlohmann::json::parse(summary_).value(image_error, nlohmann::json());
   if (stored.is_number()) outcome_.image_error_levels = stored.get<double>();
 }
 
@@ -73,7 +73,7 @@ void PairCase::save(std::string const& folder) {
 PreparedCase const& PairCase::prepared() {
   std::lock_guard const lock(mutex_);
   if (!prepared_) {
-    LogSilencer const quiet;  // summary.json contains the warnings
+    LogSilencer const quiet;  // the warnings need not be logged again, since summary.json contains them
     prepared_ = prepare_case(loaded_);
   }
   return *prepared_;

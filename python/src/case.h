@@ -25,22 +25,22 @@ class PairCase {
   std::string const& folder() const { return folder_; }  ///< CASE folder that was loaded; empty: rendered
   CaseSetup const& loaded() const { return loaded_; }
   GroundTruth const& truth() const { return frames_ ? rendered_->rendering->truth : stored_truth_; }
-  /// Grey levels [2, rows, columns] of reference and measurement image.
+  /// Returns the grey levels [2, rows, columns] of frame A and frame B.
   std::vector<std::uint16_t> const& images() const { return images_; }
   TruthAccuracy const& accuracy() const { return outcome_.accuracy; }
   double image_error_levels() const { return outcome_.image_error_levels; }
   std::string const& reference_sha256() const { return outcome_.reference_sha256; }
   std::string const& flow_sha256() const { return outcome_.flow_sha256; }
 
-  /// Contents of summary.json.
+  /// Returns the contents of summary.json.
   std::string summary();
   std::string resolved() const { return loaded_.document.resolved(); }
   /// Writes the CASE folder. @throws OutputError; DataError for a case that was loaded
   void save(std::string const& folder);
 
-  /// Scene with step and rays. @throws SetupError
+  /// Returns the scene with its step size and ray budget. @throws SetupError
   PreparedCase const& prepared();
-  /// Light of the images, rendered again if the case was loaded.
+  /// Returns the light of the images, which is rendered again if the case was loaded.
   RenderedCase const& rendered(Backend const& device);
 
  private:
@@ -49,10 +49,11 @@ class PairCase {
   std::string camera_;
   CaseSetup loaded_;
   std::optional<PreparedCase> prepared_;
-  std::optional<RenderedCase> rendered_;  ///< of a loaded case: rendered on demand, without theory
-  std::optional<RecordedFrames> frames_;  ///< nullopt: the case was loaded
-  CaseOutcome outcome_;                   ///< of a loaded case: accuracy, image error and hashes only
-  GroundTruth stored_truth_;              ///< truth of a loaded case
+  std::optional<RenderedCase> rendered_;  ///< rendering of a loaded case without theory, computed on demand
+  std::optional<RecordedFrames> frames_;  ///< frames of a rendered case; nullopt: the case was loaded
+  /// Outcome of the rendering; for a loaded case, only accuracy, image error and hashes.
+  CaseOutcome outcome_;
+  GroundTruth stored_truth_;  ///< truth of a loaded case
   std::vector<std::uint16_t> images_;
   std::string folder_, summary_;
   std::mutex mutex_;  ///< protects members that are computed on demand

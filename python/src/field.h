@@ -11,14 +11,14 @@ namespace gladstone::python {
 /// Displacement vectors in our conventions, with their origin.
 struct MeasuredField {
   DisplacementField field;
-  std::string name = "field";                   ///< for messages: path of the file, or "field"
-  bool foreign = true;                          ///< not measured by gladstone
-  std::optional<CorrelationSettings> settings;  ///< of our measurement
+  std::string name = "field";                   ///< name for messages: path of the file, or "field"
+  bool foreign = true;                          ///< true: not measured by gladstone
+  std::optional<CorrelationSettings> settings;  ///< settings of our measurement; nullopt: foreign
   std::string resolved;                         ///< settings as TOML; empty: foreign
   std::string device;                           ///< "cpu" or "cuda"; empty: foreign
   double seconds = 0;                           ///< wall time of the correlation [s]
   std::string reference_sha256, flow_sha256;    ///< hashes of the frames; empty: unknown
-  bool complete = true;                         ///< false: the file's header declares another number of vectors
+  bool complete = true;                         ///< false: the file's header declares a different number of vectors
 };
 
 }  // namespace gladstone::python

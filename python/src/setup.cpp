@@ -8,6 +8,7 @@
 #include "python/src/setup_text.h"
 #include "render/base/parallel.h"
 #include "render/files/text_file.h"
+#include "render/scene/setup_document.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/backend.h"
 #include "studies/case/cameras.h"
@@ -19,7 +20,7 @@ namespace gladstone::python {
 namespace {
 
 /// Returns true if a later `replace` can solve a problem of this kind: a key that is still missing, or a file that does
-/// not exist yet. Mistakes in what is written are reported at once.
+/// not exist yet. All other mistakes are reported at once.
 bool may_wait(ErrorCode code) {
   switch (code) {
     case ErrorCode::invalid_value:
@@ -49,7 +50,7 @@ SetupText checked(SetupText setup) {
 }
 
 SetupText read_setup_file(std::string const& path) {
-  SetupDocument::from_file(path);  // reports a file that cannot be read or is not TOML
+  read_setup_document(path);  // reports a file that cannot be read or is not TOML
   return checked({read_text_file(path), path, std::filesystem::absolute(path).parent_path().string(), {}});
 }
 

@@ -73,3 +73,18 @@ def written_case(program, bos, tmp_path_factory):
     program("correlate", place)
     program("compare", place, "--no-figures")
     return place
+
+
+@pytest.fixture
+def codes():
+    """Returns warnings as "code at place", with the name of a file without its folders."""
+
+    def list_codes(caught):
+        messages = [warning.message for warning in caught]
+        return [
+            one.code + (f" at {os.path.basename(one.place)}" if one.place else "")
+            for one in messages
+            if isinstance(one, gs.GladstoneWarning)
+        ]
+
+    return list_codes

@@ -1,6 +1,7 @@
 """Behaviour of all calls: threads, Ctrl-C, progress, warnings, memory."""
 
 import os
+import pickle
 import resource
 import signal
 import subprocess
@@ -103,11 +104,13 @@ def test_exception_in_progress_ends_the_call(bos):
     assert bos.render(device="cpu").images.any()
 
 
-def test_warnings_name_the_caller(bos):
+def test_warnings_name_the_caller(bos, codes):
     still = bos.replace({"medium.field": {"kind": "uniform_gradient", "gradient_kg_m4": [0.0, 0.0, 0.0]}})
     with pytest.warns(gs.GladstoneWarning) as caught:
         case = still.render(device="cpu")
     assert {str(warning.message) for warning in caught} & set(case.summary["warnings"])
+    assert "unsuitable at medium.field" in codes(caught)
+    assert pickle.loads(pickle.dumps(caught[0].message)).code == caught[0].message.code
     assert all(warning.filename == __file__ for warning in caught)
 
 

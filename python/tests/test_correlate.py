@@ -105,17 +105,59 @@ def test_images_of_torch(field, case):
     assert same(gs.correlate(a, b, device="cpu", **SETTINGS).u, field.u)
 
 
-def test_images_of_cupy(field, case):
-    cupy = pytest.importorskip("cupy")
+@pytest.fixture
+def cupy():
+    library = pytest.importorskip("cupy")
     try:
-        a, b = (cupy.asarray(image) for image in (case.a, case.b))
-    except cupy.cuda.runtime.CUDARuntimeError as error:
+        library.zeros(1)
+    except library.cuda.runtime.CUDARuntimeError as error:
         pytest.skip(f"no usable GPU: {error}")
+    return library
+
+
+def test_images_of_cupy(cupy, field, case):
+    a, b = (cupy.asarray(image) for image in (case.a, case.b))
     assert same(gs.correlate(a, b, device="cpu", **SETTINGS).u, field.u)
     back = cupy.from_dlpack(cupy.asarray(field.u))
     assert same(cupy.asnumpy(back), field.u)
     dense = gs.Field.from_dense(cupy.stack([a.astype(float), b.astype(float)], axis=-1))
     assert same(dense.u, case.a) and same(dense.v, case.b)
+
+
+# Whatever their type and memory layout, images of a GPU give the vectors of the same images in host memory.
+@pytest.mark.parametrize("type", ["uint16", "int32", "uint64", "float32", "float64"])
+def test_images_stay_on_the_gpu(cupy, case, type):
+    a, b = case.a.astype(type), case.b.astype(type)
+    expected = gs.correlate(a, b, device="cuda", **SETTINGS)
+    wide = cupy.zeros((192, 96), type)
+    wide[1::2] = cupy.asarray(a)
+    with cupy.cuda.Stream(non_blocking=True):
+        on_gpu = cupy.asfortranarray(cupy.asarray(b) + cupy.asarray(0, type))
+        measured = gs.correlate(wide[1::2], on_gpu, device="cuda", **SETTINGS)
+    assert measured.device == "cuda"
+    assert same(measured.u, expected.u) and same(measured.v, expected.v) and same(measured.status, expected.status)
+    with pytest.warns(gs.GladstoneWarning, match="may not have been measured"):
+        case.compare(measured)
+
+
+def test_images_of_a_gpu_are_checked_like_others(cupy, case):
+    a, b = cupy.asarray(case.a.astype(float)), cupy.asarray(case.b.astype(float))
+    a[:, :8] = cupy.nan
+    with pytest.warns(gs.GladstoneWarning, match=f"a: {8 * 96} of {96 * 96} pixels are nan"):
+        gs.correlate(a, b, **SETTINGS)
+    with pytest.raises(gs.DataError, match="both frames must have one size"):
+        gs.correlate(a, b[:64], **SETTINGS)
+    with pytest.raises(gs.DataError, match="all of its"):
+        gs.correlate(a, cupy.full_like(b, cupy.nan), **SETTINGS)
+    with pytest.raises(ValueError, match="grey image"):
+        gs.correlate(a, b[None], **SETTINGS)
+    with pytest.raises(gs.DataError, match="neither an integer"):
+        gs.correlate(a.astype("float16"), b.astype("float16"), **SETTINGS)
+    # settings that the GPU does not support, and arrays in different memories
+    mixed = gs.correlate(a, case.b, **SETTINGS)
+    assert same(gs.correlate(a, b, **SETTINGS).u, mixed.u)
+    image_matching = gs.correlate(a, b, uncertainty="image_matching", **SETTINGS)
+    assert image_matching.uncertainty_method == "image_matching"
 
 
 class OnlyDLPack:

@@ -80,10 +80,11 @@ def test_consecutive_images(frames):
     assert len(sequence) == 3
 
 
-def test_bad_pair_is_reported(frames):
+def test_bad_pair_is_reported(frames, codes):
     (frames / "B_1.tif").write_bytes(b"no image")
-    with pytest.warns(gs.GladstoneWarning, match="B_1.tif"):
+    with pytest.warns(gs.GladstoneWarning, match="B_1.tif") as caught:
         sequence = gs.correlate_sequence(frames, device="cpu", **SETTINGS)
+    assert codes(caught) == ["failed at A_1.h5"]
     assert sequence.failed == [1] and "B_1.tif" in sequence.pairs[1]["error"]
     assert len(list(sequence)) == 1
     with pytest.raises(ValueError, match="B_1.tif"):
@@ -101,7 +102,7 @@ def test_pair_without_valid_vector_has_failed(frames, case):
 def test_sequence_without_any_vector_is_an_error(frames):
     for name in ("B_0.tif", "B_1.tif"):
         (frames / name).write_bytes(b"no image")
-    with pytest.warns(gs.GladstoneWarning), pytest.raises(gs.DataError, match="none of the 2 pairs"):
+    with pytest.warns(gs.GladstoneWarning), pytest.raises(gs.DataError, match="all 2 pairs failed"):
         gs.correlate_sequence(frames, device="cpu", **SETTINGS)
     with pytest.raises(gs.DataError) as missing:
         gs.correlate_sequence(frames / "nothing.tif", device="cpu", **SETTINGS)

@@ -100,7 +100,7 @@ def test_folders_and_dewarped_images(result, folders, cases):
     assert np.nanmean(images.w) == pytest.approx(0.06, abs=2e-3)
 
 
-def test_problems_are_reported(cases, folders):
+def test_problems_are_reported(cases, folders, codes):
     with pytest.raises(ValueError, match="dewarp"):
         gs.stereo(*folders, dewarp="other")
     with pytest.raises(gs.DataError, match="with calibrations"):
@@ -109,8 +109,9 @@ def test_problems_are_reported(cases, folders):
         gs.stereo(folders[0], device="cpu")
     with pytest.raises(gs.DataError, match="same direction"):
         gs.stereo(folders[0], folders[0], device="cpu")
-    with pytest.warns(gs.GladstoneWarning, match="align"):
+    with pytest.warns(gs.GladstoneWarning) as caught:
         displaced = gs.stereo(*folders, sheet_z_mm=0.5, device="cpu")
+    assert "inconsistent" in codes(caught)
     assert displaced.summary["given_sheet"]["disparity_px"] > 5
 
 

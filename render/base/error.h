@@ -10,7 +10,7 @@ namespace gladstone {
 /// Kind of an error. `code` in the JSON of --json and of the Python exceptions is its name; docs/reference/errors.md
 /// lists them.
 enum class ErrorCode {
-  // A setup or another text with keys
+  // Errors in a setup or another text with keys
   invalid_value,   ///< a value that is not finite, or contradicts another value of the same input
   unknown_key,     ///< a key or table that is not read
   missing_key,     ///< a required key without a value
@@ -18,7 +18,7 @@ enum class ErrorCode {
   out_of_range,    ///< a number outside its limits
   unknown_choice,  ///< a word that is not one of the choices
   syntax,          ///< a text that cannot be parsed: not TOML, or a table with a line that is not one of its rows
-  // An input file
+  // Errors in an input file
   missing_file,     ///< a file or folder that does not exist
   unreadable_file,  ///< a file or folder that cannot be opened or read, such as one without permission
   wrong_format,     ///< an input of another format or kind than required, such as a text in place of an image
@@ -28,11 +28,11 @@ enum class ErrorCode {
   wrong_shape,      ///< an image or array of another size than required
   inconsistent,     ///< an input that contradicts another one, such as vectors of other frames
   changed,          ///< a file that has changed since its content was used
-  // A computation
+  // Errors in a computation
   undetermined,     ///< inputs that are too few, too similar or ambiguous to determine the result
   no_valid_vector,  ///< a vector field without a single valid vector
   memory,           ///< a computation that needs more memory than is available
-  // The surroundings
+  // Errors of outputs, accelerators and arguments, and of the program itself
   output,       ///< an output that cannot be written or would overwrite other data
   device,       ///< an accelerator that is absent, out of memory or failing
   arguments,    ///< a command line or call whose arguments are incomplete or contradictory
@@ -68,9 +68,10 @@ class Error : public std::runtime_error {
     at_key_ = true;
   }
   ErrorCode code() const { return code_; }
-  /// "file", "file:line", "file:line:column", key path of a setup, or name of another input; may be empty
+  /// Returns the place of the error: "file", "file:line", "file:line:column", key path of a setup, or name of another
+  /// input; may be empty.
   std::string const& place() const { return place_; }
-  /// path of the setup's key that causes the error; empty if the place is not a key
+  /// Returns the path of the setup's key that causes the error; empty if the place is not a key.
   std::string key() const { return at_key_ ? place_ : ""; }
   std::string const& message() const { return message_; }
 
@@ -127,7 +128,7 @@ class DeviceMemoryError : public DeviceError {
 /// The user pressed Ctrl-C. Exit code 130.
 class Interrupted : public Error {
  public:
-  explicit Interrupted(std::string const& message = "interrupted; nothing was left behind")
+  explicit Interrupted(std::string const& message = "interrupted; no incomplete files remain")
       : Error(ErrorCode::interrupted, message) {}
 };
 

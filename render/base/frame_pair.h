@@ -16,10 +16,10 @@ struct FramePair {
 class StoredFrames {
  public:
   virtual ~StoredFrames() = default;
-  /// Returns frame A in host memory. Frames in device memory are copied by the first call, which must not run
-  /// concurrently with another.
+  /// Returns frame A in host memory. For frames in device memory, the first call copies them to the host; it must not
+  /// run concurrently with another call.
   virtual Image<double> const& reference() const = 0;
-  /// Returns frame B in host memory, likewise.
+  /// Returns frame B in host memory, under the same conditions as reference().
   virtual Image<double> const& flow() const = 0;
 };
 

@@ -10,7 +10,7 @@ void catch_interrupts();
 /// Requests that all running computations stop, as Ctrl-C does. For programs with their own signal handling, such as
 /// Python.
 void request_interrupt();
-/// Withdraws the request, so that the next computation runs.
+/// Withdraws the request to stop, so that the next computation runs.
 void clear_interrupt();
 
 /// Throws Interrupted if the user has asked to stop. The cost is one atomic load.

@@ -16,9 +16,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// suffix ("pitch" for "pitch_mm") has distance 1. Returns nullopt if no candidate is near enough.
 std::optional<std::string> nearest_name(std::string_view word, std::vector<std::string> const& candidates);
 
-/// Returns up to `most` candidates that are near enough, as nearest_name(), without duplicates, in the order of their
-/// distance.
-/// @param share  reciprocal of the largest allowed distance as a fraction of the longer word's length
+/// Returns up to `most` candidates without duplicates, in the order of their distance.
+/// @param share  reciprocal of the largest allowed distance as a fraction of the longer word's length; nearest_name()
+/// uses 3
 std::vector<std::string> nearest_names(std::string_view word, std::vector<std::string> const& candidates,
                                        std::size_t most, std::size_t share = 3);
 

@@ -52,7 +52,7 @@ class ArenaPool {
   std::map<int, std::vector<Arena>> idle_;
 };
 
-/// RAII guard: an arena of the pool, for one loop.
+/// RAII guard that takes an arena of the ArenaPool for one loop, and returns it afterwards.
 class LoopArena {
  public:
   explicit LoopArena(int threads) : threads_(threads), arena_(ArenaPool::instance().acquire(threads)) {}

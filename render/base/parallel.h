@@ -13,7 +13,7 @@ int thread_count();
 /// call; the first exception ends the loop and is rethrown to the caller.
 void parallel_for(std::size_t count, std::function<void(std::size_t)> const& body);
 
-/// Calls body(begin, end) for contiguous chunks of at most `grain` indices, as parallel_for(). The chunks depend only
+/// Like parallel_for(), calls body(begin, end) for contiguous chunks of at most `grain` indices. The chunks depend only
 /// on count and grain, not on the number of threads.
 void parallel_chunks(std::size_t count, std::size_t grain,
                      std::function<void(std::size_t begin, std::size_t end)> const& body);

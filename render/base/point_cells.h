@@ -32,7 +32,7 @@ class PointCells {
     if (!any) return;
     // Limit the number of cells, since a few distant points could demand more cells than there are points.
     double const most = 4.0 * static_cast<double>(points.size()) + 16.0;
-    constexpr double farthest = 1e150;  // its square is finite
+    constexpr double farthest = 1e150;  // limits width and height, so that their product is finite
     double const width = std::min(high.x - low_.x, farthest), height = std::min(high.y - low_.y, farthest);
     double const wanted = (width / cell_ + 1.0) * (height / cell_ + 1.0);
     if (wanted > most) cell_ = std::max(cell_ * std::sqrt(wanted / most), std::max(width, height) / most);

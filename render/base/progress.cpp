@@ -11,7 +11,7 @@ bool enabled = true;
 
 constexpr long long line_interval_ms = 30'000;  // interval between lines if stderr is not a terminal
 
-std::mutex drawing;  // several bars share stderr
+std::mutex drawing;  // serialises the drawing of concurrent bars on stderr
 
 thread_local ProgressMonitor* monitor_of_thread = nullptr;
 

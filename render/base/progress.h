@@ -8,14 +8,14 @@
 
 namespace gladstone {
 
-/// Receives the progress reports that its thread makes, in place of stderr. Another thread may read them at any time.
+/// Receives the progress reports of one thread (see Scope) in place of stderr. Other threads may read them at any time.
 class ProgressMonitor {
  public:
   ProgressMonitor() = default;
   ProgressMonitor(ProgressMonitor const&) = delete;
   ProgressMonitor& operator=(ProgressMonitor const&) = delete;
 
-  /// Report of the computation that began last.
+  /// Progress of the computation that began last.
   struct Report {
     std::size_t number = 0;  ///< number of computations begun so far; 0: none
     std::string label;

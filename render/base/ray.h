@@ -27,7 +27,7 @@ constexpr char const* to_string(RayStatus status) {
 /// Straight ray in the world frame.
 template <class T>
 struct Ray {
-  Vec3<T> position;   ///< origin [m]
+  Vec3<T> position;   ///< starting point [m]
   Vec3<T> direction;  ///< unit vector
 };
 

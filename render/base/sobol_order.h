@@ -20,7 +20,7 @@ GLADSTONE_HD inline int highest_bit(std::uint32_t x) {
 #endif
 }
 
-/// Returns the bits of x at even positions, without the gaps.
+/// Returns the bits of x at even positions, packed without gaps.
 GLADSTONE_HD inline std::uint32_t even_bits(std::uint32_t x) {
   x &= 0x55555555u;
   x = (x | (x >> 1)) & 0x33333333u;
@@ -50,17 +50,17 @@ GLADSTONE_HD inline std::uint32_t unscramble_digits(std::uint32_t digits, int co
 
 }  // namespace detail
 
-/// Returns the index of the point of the scrambled sequence at a place of an order that resembles Morton's (1966), for
-/// coordinates that are the squared radius and the angle of a point in the unit disc: points at adjacent places are
-/// neighbours in the disc, for any seeds, and therefore rays through them read the same cells of a medium. The order is
-/// a permutation of the first `count` points.
+/// Returns the index of the point of the scrambled sequence at position `place` of an order that resembles Morton's
+/// (1966). Dimensions 0 and 1 of the sequence are the squared radius and the angle of a point in the unit disc. Points
+/// at adjacent positions are neighbours in the disc, for any seeds, so that rays through them read the same cells of a
+/// medium. The order is a permutation of the first `count` points.
 ///
 /// An aligned block of 2^m points has exactly one point in each of 2^m equal rectangles, 2^a along the angle by 2^r
-/// along the squared radius with a + r = m (Sobol's nets). In a block, the digits of the place select that rectangle:
-/// first a quadrant, then alternately a half of the radii and a half of the angles. The index of its point follows from
-/// a system of linear equations modulo 2, which has a closed solution for the first two dimensions. The `count` points
-/// are divided into blocks by the binary digits of `count`, the largest first.
-/// @param place  place in the order; from `count` on, the index itself
+/// along the squared radius with a + r = m (Sobol's nets). Within a block, the binary digits of `place` select the
+/// rectangle: first a quadrant, then alternately a half of the radii and a half of the angles. The index of the point
+/// in the rectangle follows from a system of linear equations modulo 2, which has a closed solution for the first two
+/// dimensions. The `count` points are divided into blocks by the binary digits of `count`, the largest first.
+/// @param place  position in the order; if it is `count` or more, the result is `place` itself
 /// @param radius_seed, angle_seed  seeds of owen_scramble() for dimensions 0 and 1
 GLADSTONE_HD inline std::uint32_t ordered_point(std::uint32_t place, std::uint32_t count, std::uint32_t radius_seed,
                                                 std::uint32_t angle_seed) {
@@ -68,7 +68,7 @@ GLADSTONE_HD inline std::uint32_t ordered_point(std::uint32_t place, std::uint32
   int const m = detail::highest_bit(place ^ count);  // the block contains 2^m points
   int const r = m > 0 ? (m - 1) / 2 : 0, a = m - r;
   std::uint32_t const first = (place >> m) << m, angles = (1u << a) - 1;
-  // Divide the digits of the place among the coordinates; the first digit is in bit 0.
+  // Divide the binary digits of `place` between angle and radius; the first digit is in bit 0.
   std::uint32_t const digits = (detail::reverse_bits(place) >> 1) >> (31 - m);
   std::uint32_t const radius = detail::even_bits(digits >> 2);
   std::uint32_t const angle = (digits & 1u) | (detail::even_bits(digits >> 1) << 1);

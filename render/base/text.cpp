@@ -19,4 +19,12 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+std::string excerpt(std::string_view text, std::size_t longest) {
+  if (text.size() <= longest) return std::string(text);
+  std::size_t end = longest - 3;
+  // do not cut within a UTF-8 character
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80u) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
 }  // namespace gladstone

@@ -4,7 +4,7 @@
 
 namespace gladstone {
 
-/// Kind of an HDF5 file that cannot be read.
+/// Result of file_kind() for an HDF5 file that cannot be read.
 inline constexpr char const* damaged_hdf5 = "damaged HDF5";
 
 /// Determines the kind of a file from its content: the filetype of a gladstone HDF5 file ("gladstone truth"), "HDF5",

@@ -48,7 +48,7 @@ bool move_file(fs::path const& from, fs::path const& to) {
   throw MoveError{from, errno};
 }
 
-/// Returns the files below a directory, as relative paths, the marker last.
+/// Returns the files below a directory, as relative paths. The marker file (FolderContent::marker) is the last one.
 std::vector<fs::path> files_below(fs::path const& folder, std::string const& marker) {
   std::vector<fs::path> files;
   std::error_code error;

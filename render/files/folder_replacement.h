@@ -31,12 +31,13 @@ inline constexpr char const* staged_files = "new";
 /// 3. The new files move to their final places, the marker last.
 /// 4. .replacing gets its former name again and is removed.
 /// If a move fails (a mounted file, a file of another user), all moves are undone.
-/// @param partial  partial directory on the same disk as the directory
+/// @param partial  partial directory on the same disk as `folder`
 /// @param asked    directory as the user named it, for messages
 /// @throws OutputError with the old files restored
 void replace_files(Partial& partial, std::string const& folder, std::string const& asked, FolderContent const& content);
 
-/// Completes an interrupted replacement of files. If its writer is still running, waits for it for up to five seconds.
+/// Completes an interrupted replacement of files. If the writing process is still running, waits up to five seconds for
+/// it.
 /// @throws OutputError if it is still running then, if its writer is on another host and cannot be checked, or if a
 ///         file cannot be moved
 void complete_replacement(std::string const& folder, FolderContent const& content);

@@ -15,7 +15,7 @@ class Hdf5Axes {
   /// @param file  must outlive this object
   explicit Hdf5Axes(Hdf5Writer& file) : file_(file) {}
 
-  /// Writes the numbers 0, 1, 2, ... as coordinates of an axis that has no others: dots, components, frames.
+  /// Writes the numbers 0, 1, 2, ... as coordinates of an axis without physical coordinates: dots, components, frames.
   /// @param axis  absolute path of the dataset, whose last step is the name of the axis: "/dots/dot"
   void write_numbers(std::string const& axis, std::size_t size, std::string const& description);
   /// Names the axes of a dataset, the slowest first, by the paths of their coordinates.

@@ -23,7 +23,7 @@ constexpr double incompressible_bits = 7.9;
 bool is_incompressible(std::span<unsigned char const> bytes) {
   std::array<std::uint32_t, 256> counts{};
   for (unsigned char const byte : bytes) ++counts[byte];
-  double sum = 0;  // of count log2(count)
+  double sum = 0;  // sum of count log2(count)
   for (double const count : counts) sum += count > 0 ? count * std::log2(count) : 0;
   auto const total = static_cast<double>(bytes.size());
   return std::log2(total) - sum / total > incompressible_bits;
@@ -32,7 +32,7 @@ bool is_incompressible(std::span<unsigned char const> bytes) {
 /// Stream of zlib that compresses one chunk.
 class Deflation {
  public:
-  /// @param size  of the chunk [bytes]
+  /// @param size   size of the chunk [bytes]
   /// @param parts  number of calls of add()
   Deflation(std::size_t size, std::size_t parts) : bytes_(compressBound(size) + parts * bytes_per_part) {
     check(deflateInit(&stream_, deflate_level) == Z_OK);
@@ -57,7 +57,8 @@ class Deflation {
  private:
   static constexpr std::size_t bytes_per_part = 64;  // headers of blocks at a change of the level
 
-  /// The buffer is large enough, so that only memory can be short.
+  /// Throws std::bad_alloc if zlib fails: the buffer is large enough, so that lack of memory is the only possible
+  /// cause.
   static void check(bool good) {
     if (!good) throw std::bad_alloc();
   }
@@ -66,8 +67,9 @@ class Deflation {
   z_stream stream_{};
 };
 
-/// Compresses `count` values; the chunk is filled with zeros beyond them. The bytes of equal significance follow each
-/// other. The last ones of measured numbers are noise, and searching them for repetitions took most of the time.
+/// Compresses `count` values; the chunk is filled with zeros beyond them. Bytes of equal significance are stored
+/// together. The least significant bytes of measured numbers are noise, and searching them for repetitions took most of
+/// the time.
 std::vector<unsigned char> deflate_values(unsigned char const* values, std::size_t count, std::size_t value_bytes,
                                           std::size_t chunk_values) {
   std::vector<unsigned char> shuffled(chunk_values * value_bytes);

@@ -7,8 +7,8 @@
 /// serves one thread at a time.
 namespace gladstone {
 
-/// Level of deflate. Of the numbers of a measurement only the leading bytes can be compressed: higher levels take 1.3
-/// times as long for files that are 1 % smaller.
+/// Compression level of deflate. Only the leading bytes of measured numbers are compressible, so that higher levels
+/// take 1.3 times as long for files that are 1 % smaller.
 inline constexpr int deflate_level = 1;
 inline constexpr std::size_t max_chunk_bytes = 1024 * 1024;
 
@@ -19,15 +19,15 @@ std::vector<std::size_t> chunk_shape(std::vector<std::size_t> const& shape, std:
 
 /// Compressed chunk.
 struct DeflatedChunk {
-  std::vector<std::size_t> start;  ///< indices of its first value
+  std::vector<std::size_t> start;  ///< indices of the first value of the chunk in the dataset
   std::vector<unsigned char> bytes;
 };
 
 /// Compresses the datasets of a file.
 class ChunkDeflater {
  public:
-  /// @param retains  true: datasets of one chunk with the same values, such as a column and its copy on a grid, are
-  ///                 compressed once; for this, the first ones are held in memory
+  /// @param retains  true: datasets of one chunk with equal values, such as a column and its copy on a grid, are
+  /// compressed once; for this comparison, earlier datasets are held in memory
   explicit ChunkDeflater(bool retains = true) : retains_(retains) {}
 
   /// Compresses a dataset chunk by chunk. Chunks that exceed the dataset are filled with zeros.
@@ -41,7 +41,7 @@ class ChunkDeflater {
     std::vector<unsigned char> values, deflated;
   };
   bool retains_;
-  std::vector<Known> known_;  ///< datasets of one chunk
+  std::vector<Known> known_;  ///< datasets of one chunk that have been compressed
 };
 
 }  // namespace gladstone

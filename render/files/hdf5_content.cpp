@@ -62,7 +62,7 @@ class FileInMemory {
   Id file_{H5I_INVALID_HID, H5Fclose};
 };
 
-/// Returns everything that determines the skeleton of a file, as text.
+/// Returns everything that determines the structure of a file without values, as text.
 std::string describe_structure(HeldContent const& content) {
   std::string text;
   auto const add = [&text](std::string const& part) { text.append(part).push_back('\0'); };
@@ -96,8 +96,8 @@ std::vector<char> make_skeleton(std::string const& path, HeldContent const& cont
   return image;
 }
 
-/// Returns a file with the groups, datasets and common attributes of a content, without values. The latest skeletons
-/// are retained.
+/// Returns a file with the groups, datasets and common attributes of a content, without values (skeleton). The latest
+/// skeletons are retained.
 std::vector<char> find_skeleton(std::string const& path, HeldContent const& content) {
   struct Skeleton {
     std::string structure;
@@ -194,7 +194,7 @@ std::vector<char> make_file_image(std::string const& path, HeldContent content) 
     for (HeldAttribute const& attribute : content.attributes) set_attribute(file.id(), path, attribute);
     size = file.flush(path);
   }
-  image.resize(size);  // without lock, since fresh memory takes time
+  image.resize(size);  // the library is not locked here, since allocating memory takes time
   Lock const lock(library_lock());
   file.take_image(path, image);
   return image;

@@ -24,13 +24,13 @@ struct HeldDataset {
   ValueType type = ValueType::float64;
   std::vector<std::size_t> shape;
   std::string units, description, axes;
-  std::vector<std::size_t> chunk;     ///< empty: not compressed
+  std::vector<std::size_t> chunk;     ///< shape of the chunks; empty: not compressed
   std::vector<DeflatedChunk> chunks;  ///< values of a compressed dataset
-  std::vector<unsigned char> values;  ///< values of the others
+  std::vector<unsigned char> values;  ///< values of an uncompressed dataset
 };
 
 /// Creates a dataset, with its groups and texts, without values.
-/// @param level  of deflate, if the dataset has chunks
+/// @param level  compression level of deflate, used if the dataset has chunks
 void create_dataset(std::int64_t file, std::string const& path, HeldDataset const& dataset, int level);
 /// Writes the values of a dataset that exists.
 void fill_dataset(std::int64_t file, std::string const& path, HeldDataset const& dataset);
@@ -53,10 +53,10 @@ struct HeldContent {
   std::vector<ScaledDataset> scales;
   std::vector<HeldAttribute> attributes;
 };
-/// Returns the bytes of a file; locks the library. Datasets and attributes without values take most of the library's
-/// time, during which other threads wait. They are the same in all files of a sequence, and are copied from the
-/// previous file of the same structure.
-/// @param content  whose datasets are released as they are written
+/// Returns the bytes of a file; locks the library. The library spends most of its time on creating datasets and
+/// attributes, while other threads wait. Since all files of a sequence have the same ones, they are copied without
+/// values from the previous file of the same structure.
+/// @param content  content of the file; the memory of its datasets is released as they are written
 std::vector<char> make_file_image(std::string const& path, HeldContent content);
 
 }  // namespace gladstone::hdf5

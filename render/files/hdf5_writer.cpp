@@ -24,7 +24,7 @@ using namespace hdf5;
 struct Hdf5Writer::Handle {
   OutputFile output;
   Hdf5Growth growth;
-  HeldContent content;  ///< of an in-memory file; otherwise only its origin
+  HeldContent content;  ///< content of an in-memory file; of other files only the origin
   Id file;              ///< on-disk file
   ChunkDeflater deflater;
 
@@ -92,7 +92,8 @@ void Hdf5Writer::Handle::create_on_disk(std::string const& path) {
 template <class Value>
 void Hdf5Writer::Handle::add(std::string const& path, HeldDataset dataset, std::span<Value const> values) {
   dataset.type = value_type<Value>();
-  if (values.size_bytes() > compressed_from_bytes) {  // before locking, so that several threads compress
+  if (values.size_bytes() > compressed_from_bytes) {  // compress before locking, so that several threads work at the
+                                                      // same time
     dataset.chunk = chunk_shape(dataset.shape, sizeof(Value));
     dataset.chunks = deflater.deflate(values.data(), dataset.shape, dataset.chunk, sizeof(Value));
   } else {

@@ -11,7 +11,7 @@ namespace gladstone {
 /// below it the description.
 std::string image_description(ImageMetadata const& metadata);
 
-/// Returns the metadata of a page: those that gladstone wrote, else bits and resolution as its header states them.
+/// Returns the metadata of a page: as written by gladstone, else bit depth and resolution from the page's header.
 ImageMetadata metadata_of(PageHeader const& header);
 
 }  // namespace gladstone

@@ -28,7 +28,7 @@ struct ImageMetadata {
 Image<double> read_image(std::string const& path, ImageMetadata* metadata = nullptr);
 
 /// Reads a file of two pages, as written by PIV cameras: frame A and frame B. Pages smaller than the first in both
-/// directions are previews and do not count.
+/// directions are previews, which are ignored.
 /// @throws DataError if the number of pages is not two
 std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetadata* metadata = nullptr);
 

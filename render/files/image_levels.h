@@ -10,7 +10,7 @@ namespace gladstone {
 
 /// Reads the current page of an image file as grey levels, upright.
 /// @param path        for errors
-/// @param file_bytes  size of the file [bytes], with which that of the page must agree
+/// @param file_bytes  size of the file [bytes]; the page must fit into it
 /// @throws DataError for a damaged page, and for channels that are neither grey levels nor colours
 Image<double> read_grey_levels(PageReader& input, std::string const& path, std::uint64_t file_bytes);
 

@@ -14,7 +14,7 @@ namespace gladstone {
 /// Location of a page in its file.
 struct PageLocation {
   int index = 0;                ///< index among all pages, with previews
-  std::uint64_t directory = 0;  ///< offset of the directory of a TIFF [bytes]; 0: of another format
+  std::uint64_t directory = 0;  ///< offset of the page's directory in a TIFF [bytes]; 0: other formats
   std::array<int, 2> size{};    ///< columns and rows of the upright image [px]
 };
 
@@ -22,8 +22,8 @@ struct PageLocation {
 /// file is open only during a call; several threads may read pages at once.
 class ImagePages {
  public:
-  /// Pages smaller than the first in both directions are previews and do not count. A page that the file declares, but
-  /// that cannot be read since the file is cut short, counts.
+  /// Locates the pages. Pages smaller than the first in both directions are previews, which are not counted. A page
+  /// that the file declares, but that cannot be read since the file is cut short, is counted.
   /// @throws DataError, with the code out_of_range if there are more than max_pages pages (TIFF) or max_codec_pages
   explicit ImagePages(std::string const& path);
 

@@ -33,7 +33,7 @@ class OutputDestination {
   std::vector<std::string> made_;
 };
 
-/// Returns "a pipe", "a socket" or "a device" for such a path; empty for files, directories and missing paths.
+/// Returns "a pipe", "a socket" or "a device" for the path of one; empty for files, directories and missing paths.
 std::string special_file(std::string const& path);
 
 /// Checks that no output is the same file or directory as an input, under any name: also through links or as another

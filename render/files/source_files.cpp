@@ -145,7 +145,7 @@ std::string SourceFiles::sha256(std::string const& name) const {
 void SourceFiles::check() const {
   for (Source const& source : sources_) {
     if (source.path.empty()) continue;
-    std::string what = "another SHA-256 of what it holds";
+    std::string what = "the SHA-256 of its content differs";
     try {
       if (hash_of(source.path, source.holds) == source.sha256) continue;
     } catch (DataError const& error) {  // the file was removed, or partly overwritten

@@ -37,7 +37,8 @@ class SourceFiles {
 
   /// Adds a file that is about to be read, and hashes it. @throws DataError
   void add(std::string name, std::string path, Holds holds);
-  /// Adds a file likewise, with the datasets of an HDF5 file and the bytes of another one.
+  /// Adds a file that is about to be read, and hashes the datasets of an HDF5 file or the bytes of any other.
+  /// @throws DataError
   void add(std::string name, std::string path);
   /// Adds a file that was hashed when it was read.
   void add(std::string name, std::string path, Holds holds, std::string sha256);

@@ -24,7 +24,7 @@ struct TecplotZone {
 /// Parses the lines before the numbers of a file, joined by blanks.
 TecplotZone parse_tecplot_zone(std::string const& header);
 
-/// Values of a zone in BLOCK packing, collected from its lines, which may end anywhere.
+/// Values of a zone in BLOCK packing, collected line by line; lines may end anywhere within a variable.
 class BlockValues {
  public:
   explicit BlockValues(std::string path) : path_(std::move(path)) {}
@@ -41,7 +41,7 @@ class BlockValues {
  private:
   std::string path_;
   std::vector<double> values_;
-  std::vector<std::size_t> line_;  ///< of each value
+  std::vector<std::size_t> line_;  ///< line number of each value
 };
 
 }  // namespace gladstone

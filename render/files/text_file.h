@@ -8,6 +8,7 @@
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
+#include "render/base/text.h"
 #include "render/files/input_file.h"
 
 namespace gladstone {
@@ -33,9 +34,9 @@ class LineReader {
   std::optional<std::string_view> next();
   /// Number of the line that next() returned last, counted from 1.
   std::size_t number() const { return number_; }
-  /// Location of that line, "file:number".
+  /// Location of the line that next() returned last, "file:number".
   std::string place() const;
-  /// Offset in the file of the first byte after that line; meaningless for UTF-16.
+  /// Offset in the file of the first byte after the line that next() returned last; meaningless for UTF-16.
   std::uint64_t offset() const { return offset_; }
 
  private:
@@ -64,8 +65,5 @@ void require_room(std::vector<Row> const& rows, std::string const& path, std::st
   require_memory(path, "a table of more than " + std::to_string(rows.size()) + ' ' + what,
                  3.0 * static_cast<double>(rows.size() * sizeof(Row)));
 }
-
-/// Shortens a text to `longest` bytes for a message, ending in "..." if it was cut.
-std::string excerpt(std::string_view text, std::size_t longest = 60);
 
 }  // namespace gladstone

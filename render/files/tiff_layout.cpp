@@ -74,7 +74,7 @@ SampleType sample_type(TIFF* handle) {
                      tag_value<std::uint16_t>(handle, TIFFTAG_BITSPERSAMPLE, 1));
 }
 
-/// Returns the PhotometricInterpretation; if it is missing, that of one channel is grey, and that of several is RGB.
+/// Returns the PhotometricInterpretation; if it is missing, grey for one channel and RGB for several.
 std::uint16_t photometric(TIFF* handle, std::uint16_t channels) {
   std::uint16_t value = channels == 1 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB;
   TIFFGetField(handle, TIFFTAG_PHOTOMETRIC, &value);

@@ -2,7 +2,8 @@
 
 #include "render/focused_dots/dot_model.h"
 
-/// Ray tracing of a dot and the integral over its light cone, by a group of lanes (OneLane, or a device's).
+/// Ray tracing of a dot and the integral over its light cone, by a group of lanes: OneLane on the CPU, a block of
+/// threads on a GPU.
 namespace gladstone {
 
 /// Results of a dot after its rays are traced and its light cone is integrated.
@@ -17,7 +18,7 @@ struct DotCone {
   MomentField field;  ///< moments as a function of the position on the dot; only for DotKind::narrow
 };
 
-/// Results that a renderer stores.
+/// Results of a dot that a renderer stores.
 struct DotFound {
   DotTruth truth;
   int rays = 0;       ///< number of rays traced
@@ -25,8 +26,8 @@ struct DotFound {
 };
 
 /// Aims at a dot, traces an adaptive number of rays and compares them with the deflection table.
-/// @param lanes  group with storage for sums: check(ray) is the lane's sum for a ray, of_scramblings() the sums of all
-///   lanes by scrambling, count(frame, status) counts a ray; `abreast` rays are traced together on a lane
+/// @param lanes  group with storage for sums: check(ray) is this lane's sum for a ray, of_scramblings() returns the
+/// sums of all lanes for each scrambling, count(frame, status) counts a ray; each lane traces `abreast` rays together
 /// @param dot  receives the results, except its light
 /// @param found  receives ray counts and the origin of the truth
 /// @return the aim
@@ -112,11 +113,12 @@ struct ConeIntegral {
   double without_medium[PlaceRule::max_positions];  ///< sum of weights in the reference image
   double* rims = nullptr;                    ///< [place][direction] radii at the edge of the stop [m]; external memory
   Extent extents[PlaceRule::max_positions];  ///< range of displacements
-  bool simple, sound, narrow;                ///< single-valued edge of the stop; finite moments; narrow spread
+  bool simple, sound, narrow;  ///< simple: the edge of the stop is single-valued; sound: the moments are finite;
+                               ///< narrow: the spread is narrow
 };
 
 /// Computes the moments of the whole cone at every point of the source rule, one team per point, and determines from
-/// them how its light is rendered.
+/// the moments how the light of the dot is rendered.
 /// @param points  [place][point] receives the nodes of the rule, unless null
 template <class Group>
 GLADSTONE_HD void integrate_cone(Group const& group, DotModel const& model, CorrectedCone const& cone,

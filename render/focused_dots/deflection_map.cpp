@@ -13,11 +13,13 @@ namespace {
 
 constexpr double most_rays = 1e8;     // maximum number of rays of a table
 constexpr double cheap_rays = 2.5e5;  // maximum number of rays of a table with doubled node density
-constexpr double fine_rays = 2.5e7;   // the same limit if a finer table is requested
+constexpr double fine_rays = 2.5e7;   // maximum number of rays of a table with doubled node density if it is requested
 constexpr double fewest_nodes = 12;   // minimum number of nodes along either axis of the view
-// pupil points for the slopes, in radii of the stop: mean radius of the points of the stop
+// distance from the centre of the pupil points for the slopes, in radii of the stop: mean radius of the points of the
+// stop
 constexpr double slope_reach = 0.6;
-constexpr double leaning = 2;  // in radii of the stop: rays farther out are ignored at the side faces of a field
+constexpr double leaning = 2;  // largest distance from the pupil's centre, in radii of the stop, of the rays that are
+                               // considered at the side faces of a field
 
 /// Lane that traces four rays together.
 struct FourAbreast : OneLane {
@@ -28,7 +30,7 @@ struct FourAbreast : OneLane {
 /// Node density of a deflection table.
 struct NodeDensity {
   double spacing;  ///< node spacing of the straight lattice [m]
-  int coarseness;  ///< spacing of the slopes' lattice over `spacing`
+  int coarseness;  ///< spacing of the slopes' lattice in units of `spacing`
 
   /// Chooses the node density: one node per cell for a field on a grid, six per finest length (24 per wavelength) for a
   /// closed form, and half as many per axis for the slopes, which are corrections. If affordable or requested, twice as
@@ -62,14 +64,14 @@ Vec2d crossed_extent(Setup const& setup, double way) {
   return {(1 - way) * extent.x + beyond, (1 - way) * extent.y + beyond};
 }
 
-/// Returns the distance to the medium's mid-plane as a fraction of that to the lens.
+/// Returns the distance from the target to the medium's mid-plane over the distance from the target to the lens [1].
 /// @param bounds  bounds of the medium
 double way_to(Bounds<double> const& bounds, Setup const& setup) {
   return (0.5 * (bounds.low.z + bounds.high.z) + setup.z_d) / setup.z_b();
 }
 
-NodeDensity density_of(Scene const& scene, Vec2d extent) {
-  return NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, extent, scene.fineness);
+NodeDensity density_of(Scene const& scene, Vec2d extent, int fineness) {
+  return NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, extent, fineness);
 }
 
 Bounds<double> bounds_of(Scene const& scene) {
@@ -111,8 +113,9 @@ TableState table_state(Scene const& scene) {
     return TableState::dots_too_wide;
   }
   Vec2d const extent = crossed_extent(scene.setup, way);
-  return density_of(scene, extent).rays(extent.x * extent.y) <= most_rays ? TableState::made
-                                                                          : TableState::field_too_fine;
+  // A finer table is built only if it has far fewer rays than the maximum, so that the fineness has no effect here.
+  return density_of(scene, extent, 1).rays(extent.x * extent.y) <= most_rays ? TableState::made
+                                                                             : TableState::field_too_fine;
 }
 
 DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern const& sources,
@@ -147,7 +150,7 @@ DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern
       high = {std::max(high.x, c.x), std::max(high.y, c.y)};
     }
   }
-  NodeDensity const density = density_of(scene, crossed_extent(scene.setup, way));
+  NodeDensity const density = density_of(scene, crossed_extent(scene.setup, way), dots.plan().fineness);
   double const spacing_of_slopes = density.coarseness * density.spacing;
   double const reach = cone_reach(way, std::max(sources.half_size, scene.dots.half_size), stop) +
                        way * largest_aim_distance + 3 * spacing_of_slopes;

@@ -10,8 +10,8 @@
 
 namespace gladstone {
 
-/// Determines whether a deflection table can be built for a scene's dots, from the field and the view: `made`, or the
-/// reason against it.
+/// Determines from the field and the view whether a deflection table can be built for a scene's dots. Returns `made` if
+/// it can, else the reason why not.
 TableState table_state(Scene const& scene);
 
 /// Lattices of a scene's deflection table. Nodes are at multiples of a spacing that depends on field, view and light

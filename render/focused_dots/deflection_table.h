@@ -190,7 +190,7 @@ struct DeflectionTable {
     auto* const slopes = reinterpret_cast<TableSlopes*>(vectors + 2 * straight.size());
     return {vectors, vectors + straight.size(), slopes, slopes + sloping.size()};
   }
-  /// Returns the table with these values.
+  /// Returns a copy of the table that refers to the given values.
   DeflectionTable with(Values const& values) const {
     DeflectionTable table = *this;
     table.displacements = values.displacements;
@@ -205,15 +205,15 @@ struct DeflectionTable {
     return 2 * (static_cast<std::size_t>(straight.size()) * sizeof(TableVector) +
                 static_cast<std::size_t>(sloping.size()) * sizeof(TableSlopes));
   }
-  /// Returns true if the table contains all rays from within `half` of a point on the target to within `radius` of a
-  /// point in the pupil.
+  /// Returns true if the table contains the rays from all points within `half` of a point on the target to all points
+  /// within `radius` of a point in the pupil.
   GLADSTONE_HD bool covers(Vec2d on_target, double half, Vec2d pupil, double radius) const {
     Vec2d const middle = crossing(on_target, pupil);
     double const reach = (1 - way) * half + way * radius;
     return exists() && straight.covers(middle, reach) && sloping.covers(middle, reach);
   }
-  /// Returns true if no straight ray from within `half` of a point on the target to within `pupil` of the axis meets
-  /// the medium.
+  /// Returns true if the medium is not crossed by any straight ray from a point within `half` of a point on the target
+  /// to a point within `pupil` of the axis.
   GLADSTONE_HD bool beside(Vec2d on_target, double half, double pupil) const {
     bool left = true, right = true, below = true, above = true;
     for (int face = 0; face < 2; ++face) {  // A cone extends farthest at one of its ends.
@@ -237,8 +237,9 @@ struct DeflectionTable {
     return interpolate<Vec2d>(straight.about(q), shifts) +
            interpolate<PupilSlopes>(sloping.about(q), shift_slopes).at(pupil);
   }
-  /// Number of groups of four rays from which the table is built: first the rays of the straight lattice, then four
-  /// rays for every node of the slopes, at the pupil points +x, -x, +y and -y.
+  /// Number of groups of four rays from which the table is built. The first straight_fours() groups are rays to the
+  /// pupil's centre through the nodes of `straight`; then follows a group for every node of `sloping`, whose rays pass
+  /// the pupil points +x, -x, +y and -y.
   GLADSTONE_HD long long straight_fours() const { return (straight.size() + 3) / 4; }
   GLADSTONE_HD long long fours() const { return straight_fours() + sloping.size(); }
 };

@@ -12,15 +12,15 @@ struct DisplacementMoments {
   static constexpr int count = 15;
   double of[count] = {};
 
-  /// Index of x^a y^b: sorted by total order, then by the power of y.
+  /// Returns the index of the moment of x^a y^b: sorted by total order, then by the power of y.
   GLADSTONE_HD static constexpr int at(int a, int b) { return (a + b) * (a + b + 1) / 2 + b; }
 
-  /// Total order of the moment with this index.
+  /// Returns the total order of the moment with this index.
   GLADSTONE_HD static constexpr int total_order(int moment) {
     return (moment > 0) + (moment > 2) + (moment > 5) + (moment > 9);
   }
 
-  /// Sum of weight (x^2 + y^2).
+  /// Returns the sum of weight (x^2 + y^2).
   GLADSTONE_HD double square() const { return of[at(2, 0)] + of[at(0, 2)]; }
 
   GLADSTONE_HD void add(double weight, Vec2d d) {
@@ -40,7 +40,8 @@ struct PlaceRule {
   int count = 0;
   Vec2d places[max_positions];  ///< points in units of the half size, y downwards
   double weights[max_positions];
-  double fit[terms][max_positions];  ///< coefficient of a term = sum over points of fit times the value there
+  double fit[terms][max_positions];  ///< weights: the coefficient of a term is the sum over points of fit times the
+                                     ///< value at the point
 
   GLADSTONE_HD static void basis(Vec2d place, double (&value)[terms]) {
     value[0] = 1;
@@ -56,7 +57,7 @@ struct PlaceRule {
 struct MomentField {
   double coefficient[DisplacementMoments::count][PlaceRule::terms];
 
-  /// Computes one coefficient.
+  /// Computes one coefficient of the polynomial of a moment.
   /// @param moments  moments at the points of the rule
   GLADSTONE_HD static double fitted(PlaceRule const& rule, DisplacementMoments const* moments, int moment, int term) {
     double sum = 0;

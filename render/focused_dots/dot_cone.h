@@ -14,7 +14,7 @@ namespace gladstone {
 /// Node of a cone's cross-section, on rings that share their directions.
 struct ConePoint {
   double radius;  ///< radius in units of the stop's radius
-  double weight;  ///< weight: fraction of the area
+  double weight;  ///< fraction of the cross-section's area
   int direction;  ///< index of the direction
 };
 /// Cubature rule over a light cone's cross-section.
@@ -39,11 +39,13 @@ struct ConeRule {
 /// Comparison of a dot's traced rays with the deflection table: sums over rays.
 struct TableCheck {
   double rays = 0;
-  Vec2d shift{}, shift_by_x{}, shift_by_y{};  ///< traced minus tabulated [m]; times stop point [m^2]
-  double square = 0;                          ///< |stop point|^2 [m^2]
-  Vec2d traced{}, miss{};                     ///< traced displacement; traced minus tabulated displacement [px]
-  double traced2[3] = {}, expected2[3] = {};  ///< products xx, xy, yy of traced and tabulated displacements [px^2]
-  Vec2d miss2{};                              ///< squares of the components of `miss` [px^2]
+  Vec2d shift{}, shift_by_x{}, shift_by_y{};  ///< sums of the traced minus the tabulated shift [m], and of the products
+                                              ///< of this difference with the coordinates of the stop point [m^2]
+  double square = 0;       ///< sum of the squared distances of the stop points from the cone's centre [m^2]
+  Vec2d traced{}, miss{};  ///< sums of the traced displacement, and of the traced minus the tabulated one [px]
+  /// sums of the products xx, xy, yy of traced and of tabulated displacements [px^2]
+  double traced2[3] = {}, expected2[3] = {};
+  Vec2d miss2{};  ///< sums of the squared components of traced minus tabulated displacement [px^2]
 
   /// Adds a ray.
   /// @param at  point of the stop, relative to the centre of the cone [m]
@@ -98,12 +100,11 @@ GLADSTONE_HD inline CheckErrors check_errors(TableCheck const* of, int scramblin
   return {error2_factor(scramblings) * scatter2, {miss2.x > 0 ? miss2.x : 0, miss2.y > 0 ? miss2.y : 0}};
 }
 
-/// Light cone of a dot by the deflection table, corrected to agree with the traced rays on average.
+/// Light cone of a dot according to the deflection table, corrected to agree with the traced rays on average.
 class CorrectedCone {
  public:
-  /// Radii in units of the stop's radius: rays farther from the aim than `reach` are ignored; a table must cover those
-  /// up to `covered`, which reach the stop in fields that widen the cone by no more than a tenth, and is extrapolated
-  /// beyond.
+  /// Distances from the aim in units of the stop's radius. Rays beyond `reach` are ignored. A table must cover rays up
+  /// to `covered`, which suffices in fields that widen the cone by no more than a tenth; beyond, it is extrapolated.
   static constexpr double reach = 1.25, covered = 1.1;
 
   /// @param distance  from target to lens plane [m]
@@ -182,7 +183,7 @@ class CorrectedCone {
   }
 
  private:
-  static constexpr double settled = 1e-6;    ///< relative to the stop's radius
+  static constexpr double settled = 1e-6;    ///< tolerance of edge radii, relative to the stop's radius
   static constexpr double fewest_rays = 16;  ///< minimum number of rays to determine the variation of the table's error
   DeflectionTable table_;
   double stop_radius_, per_distance2_;

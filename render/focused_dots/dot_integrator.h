@@ -8,7 +8,7 @@
 namespace gladstone {
 
 struct RenderedDot : DotCone, DotFound {
-  double largest_aim_distance = 0;  ///< as DotAim::farthest [m]
+  double largest_aim_distance = 0;  ///< largest distance of an aim point from the axis, see DotAim::farthest [m]
 };
 
 /// Single lane that compares a dot's rays with the table, tracing two rays together.
@@ -44,7 +44,7 @@ class DotIntegrator {
     return seen_;
   }
   /// Renders the dot's light in both images.
-  /// @pre it is not a fallback dot, and the model's moment images are computed
+  /// @pre the dot is not a fallback dot, and the model's moment images are computed
   void accumulate_light(LightImage* const (&images)[frame_count]);
 
   /// Light cone of the last dot.
@@ -53,7 +53,7 @@ class DotIntegrator {
 
  private:
   void integrate();
-  /// Renders the light point by point.
+  /// Renders the dot's light, one point of the source after the other.
   /// @param moved  mean displacement of the light [px]
   template <int orders>
   void accumulate_light_by_points(std::size_t frame, Vec2d moved);
@@ -63,7 +63,7 @@ class DotIntegrator {
   RenderedDot seen_;
   CheckingLane lane_;
   std::vector<double> rims_;
-  ConeIntegral whole_;             ///< refers to rims_
+  ConeIntegral whole_;             ///< integrals over the whole cone; refers to rims_
   std::vector<ConeLight> points_;  ///< nodes of the cone, for all points of the source
   std::vector<unsigned short> order_;
   SquareSums<1> squares_;

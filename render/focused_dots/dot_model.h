@@ -90,11 +90,11 @@ struct DotModel {
   }
   /// Returns the squared standard error of the truth by component [px^2]: scatter of the rays' correction plus the
   /// systematic error of table and rule.
-  /// The systematic error is a fraction of the ray-to-ray standard deviation of the table's error: 0.03 to 0.04 on both
-  /// DNS planes, up to four times the density of the early one, compared with 131,072 traced rays per dot; less than
-  /// half of that with a rule twice as fine. With a smoothed edge of the stop, it also increases with the square of
-  /// that standard deviation over the width of the cone in the image. The edge radii, corrected by the same rays, add
-  /// 1e-6 to 2e-6 px.
+  /// The systematic error is a fraction of the ray-to-ray standard deviation of the table's error. Compared with
+  /// 131,072 traced rays per dot, this fraction is 0.03 to 0.04 on both DNS planes, also for up to four times the
+  /// density of the early one, and less than half of that with a rule twice as fine. With a smoothed edge of the stop,
+  /// the error also increases with the square of that standard deviation over the width of the cone in the image. The
+  /// edge radii, corrected by the same rays, add 1e-6 to 2e-6 px.
   GLADSTONE_HD Vec2d error2(CheckErrors const& errors, bool simple_edge = true) const {
     double const cone_px = 2 * table.way * stop_radius * bench.px_per_metre;
     double const leaves = simple_edge && cone.fine ? 0.015 : 0.04, folds = simple_edge ? 0 : 80 / cone_px;
@@ -113,11 +113,12 @@ struct DotModel {
 struct DotAim {
   DotKind kind = DotKind::left;  ///< left, still, or narrow if the table covers the cone
   Vec2d pupil{};                 ///< pupil point whose ray arrives at the pupil's centre [m]
-  double farthest = 0;           ///< largest distance from the axis of any iterate, to be covered by the table [m]
+  double farthest = 0;           ///< largest distance of any iterate from the axis, which the table must cover [m]
 };
 
-/// Returns the shift of a dot's rays about an aim on the lens plane, averaged over the centre and a ring of eight [m].
-/// @pre the table covers them
+/// Returns the shift of a dot's rays on the lens plane [m], averaged over nine rays: one to the aim and eight on a ring
+/// about it.
+/// @pre the table covers these rays
 GLADSTONE_HD inline Vec2d mean_shift(DotModel const& model, Vec2d centre, Vec2d aim) {
   Vec2d sum{};
   for (int x = -1; x <= 1; ++x) {

@@ -12,11 +12,11 @@ FocusedSetupView FocusedDots::bench() const {
   return {-setup.z_d,
           setup.z_a,
           scene_->imaging.magnification / setup.camera.pixel_pitch,
-          {scene_->step, setup.medium.ambient_refractivity(), setup.medium.integrator, setup.medium.faces}};
+          {plan_.step, setup.medium.ambient_refractivity(), setup.medium.integrator, setup.medium.faces}};
 }
 
 TheoryModel FocusedDots::theory_model() const {
-  return {std::min(scene_->step, scene_->medium.coarsest_step), scene_->setup.z_d, scene_->imaging.magnification,
+  return {std::min(plan_.step, scene_->medium.coarsest_step), scene_->setup.z_d, scene_->imaging.magnification,
           scene_->setup.ambient_index(), scene_->setup.camera.pixel_pitch};
 }
 
@@ -37,12 +37,12 @@ std::string reason_against_focused_dots(Setup const& setup) {
   return "";
 }
 
-std::optional<FocusedDots> focused_dots(Scene const& scene) {
+std::optional<FocusedDots> focused_dots(Scene const& scene, RenderPlan const& plan) {
   constexpr int widest_spot = 22;  // [px] to either side; limit of DotPatch's row length
   if (!reason_against_focused_dots(scene.setup).empty()) return std::nullopt;
   if (GaussianSpot<double>{scene.spot_sigma_px()}.half_width() > widest_spot) return std::nullopt;
   if (table_state(scene) != TableState::made && table_state(scene) != TableState::no_medium) return std::nullopt;
-  return FocusedDots(scene);
+  return FocusedDots(scene, plan);
 }
 
 std::vector<MemoryRequirement> focused_dots_memory(Setup const& setup) {

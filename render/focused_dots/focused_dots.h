@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/focused_dots/bench_theory.h"
-#include "render/scene/scene.h"
+#include "render/scene/render_plan.h"
 
 namespace gladstone {
 
@@ -13,19 +13,21 @@ namespace gladstone {
 /// perpendicular to the axis, with a Gaussian PSF. Only then is the reference image known in closed form and a single
 /// deflection table valid for all dots (DotModel).
 /// Required as an argument by renderer and tables; created by focused_dots() only. Refers to the scene, which must
-/// outlive it, including later changes of its plans.
+/// outlive it, and to later changes of the scene's step and ray budget.
 class FocusedDots {
  public:
   Scene const& scene() const { return *scene_; }
+  RenderPlan const& plan() const { return plan_; }
   FocusedSetupView bench() const;
   /// Parameters of small-angle theory (Eq. 9).
   TheoryModel theory_model() const;
 
  private:
-  explicit FocusedDots(Scene const& scene) : scene_(&scene) {}
-  friend std::optional<FocusedDots> focused_dots(Scene const& scene);
+  FocusedDots(Scene const& scene, RenderPlan const& plan) : scene_(&scene), plan_(plan) {}
+  friend std::optional<FocusedDots> focused_dots(Scene const& scene, RenderPlan const& plan);
 
   Scene const* scene_;
+  RenderPlan plan_;
 };
 
 /// Returns the reason why the fast renderer does not support a setup; empty if it does.
@@ -34,7 +36,7 @@ std::string reason_against_focused_dots(Setup const& setup);
 /// Returns the scene for the fast renderer; nullopt if it is not supported. Besides the conditions of
 /// reason_against_focused_dots(), fields that are so fine compared with the view that the table would need too much
 /// time and memory, dots that are wide compared with the field's length scale, and too wide a PSF are not supported.
-std::optional<FocusedDots> focused_dots(Scene const& scene);
+std::optional<FocusedDots> focused_dots(Scene const& scene, RenderPlan const& plan = {});
 
 /// Returns the memory requirements of the fast renderer beyond images, field and dots, for check_memory(), before
 /// anything is built.

@@ -20,7 +20,7 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
   Scene const& scene = dots.scene();
   bool const lit = images != RenderImages::no;
   std::size_t const count = sources.centre.size();
-  TracingPass pass(scene, sources);
+  TracingPass pass(scene, dots.plan(), sources);
   std::optional<LightImage> frames[frame_count];
   LightImage* targets[frame_count] = {};
   for (int frame = 0; lit && frame < frame_count; ++frame) {
@@ -64,26 +64,26 @@ void apply_polarity(Scene const& scene, FramePair<double>& light) {
 
 }  // namespace
 
-Rendering FocusedDotsRenderer::render(Scene const& scene, DotPattern const& sources, RenderImages images,
-                                      RenderTheory theory) {
-  std::optional<FocusedDots> const dots = focused_dots(scene);
+Rendering FocusedDotsRenderer::render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources,
+                                      RenderImages images, RenderTheory theory) {
+  std::optional<FocusedDots> const dots = focused_dots(scene, plan);
   GLADSTONE_EXPECTS(dots);
-  Rendering rendering = render_within_table(scene, [&](double largest_aim_distance) {
+  Rendering rendering = render_within_table(scene, plan, [&](double largest_aim_distance) {
     DeflectionTable const table = deflections_.table(*dots, sources, largest_aim_distance);
     return std::visit([&](auto const& medium) { return trace_all(*dots, sources, medium, table, images, theory); },
                       scene.medium.view);
   });
   rendering.table = deflections_.state();
-  rendering.pupil_margin = scene.pupil_margin;
+  rendering.pupil_margin = plan.pupil_margin;
   if (images != RenderImages::no) apply_polarity(scene, rendering.light);
   if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
 }
 
-Rendering render_within_table(Scene const& scene,
+Rendering render_within_table(Scene const& scene, RenderPlan const& plan,
                               std::function<TracingPass(double largest_aim_distance)> const& trace) {
   double room =
-      std::max(DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2, scene.pupil_margin);
+      std::max(DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2, plan.pupil_margin);
   while (true) {
     TracingPass pass = trace(room);
     if (pass.largest_aim_distance <= room) return pass.finish();

@@ -13,17 +13,19 @@ class FocusedDotsRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
   /// @pre focused_dots(scene)
-  Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  Rendering render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, RenderImages images,
+                   RenderTheory theory) override;
 
  private:
   DeflectionTableCache<DeflectionMap> deflections_;
 };
 
-/// Renders with a deflection table of default size, or one for the deflections that were found when the step was chosen
-/// if these are larger, and again with a larger table if a dot's aim point is outside it. Implements render() on every
-/// device. The size of a table does not change the results of dots that it covers.
+/// Renders with a deflection table of default size, or of the size that the deflections found when the step was chosen
+/// require if that is larger, and again with a larger table if a dot's aim point is outside it. Implements render() on
+/// every device. The size of a table does not change the results of dots that it covers.
 /// @param trace  renders once with a table that covers aim points up to a given distance from the axis [m]
-Rendering render_within_table(Scene const& scene, std::function<TracingPass(double largest_aim_distance)> const& trace);
+Rendering render_within_table(Scene const& scene, RenderPlan const& plan,
+                              std::function<TracingPass(double largest_aim_distance)> const& trace);
 
 /// Renders a white target: light per pixel, cos^4 of the angle to the axis. Dark dots are subtracted from it. It is the
 /// same in both images, since radiance is conserved along rays.

@@ -19,8 +19,8 @@ Scene alone(Scene const& scene, Vec2d place) {
 
 }  // namespace
 
-LoneDot::LoneDot(Scene const& scene, Vec2d place, int side) : scene_(alone(scene, place)), side_(side) {
-  FocusedDots const dots = focused_dots(scene_).value();
+LoneDot::LoneDot(FocusedDots const& all, Vec2d place, int side) : scene_(alone(all.scene(), place)), side_(side) {
+  FocusedDots const dots = focused_dots(scene_, all.plan()).value();
   Vec2d const centre = scene_.dots.centre[0];
   double room = DeflectionTableLayout::default_aim_distance * scene_.imaging.entrance_pupil / 2;
   do {

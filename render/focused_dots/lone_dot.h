@@ -24,32 +24,36 @@ struct RaySample {
     double count = 0;
     Vec2d mean() const { return first / count; }
   };
-  int rays = 0;                           ///< number of rays whose landing the table has predicted
-  Sum predicted, also_predicted, traced;  ///< all predicted rays; those that are also traced, both ways
-  LightImage light, difference;           ///< sums over the predicted rays; sums of traced minus predicted rays
+  int rays = 0;           ///< number of rays whose landing the table has predicted
+  Sum predicted;          ///< predicted landing positions of all rays [px]
+  Sum also_predicted;     ///< predicted landing positions of the traced rays [px]
+  Sum traced;             ///< landing positions of the traced rays [px]
+  LightImage light;       ///< light of the predicted rays
+  LightImage difference;  ///< light of the traced rays minus that of their predictions
 
   explicit RaySample(int side) : light(side, side), difference(side, side) {}
 };
 
-/// Rendering of a single white dot in pixel windows around its image in each frame, and the differences of independent
+/// Rendering of a single white dot in pixel windows around its image in each frame, and its deviation from independent
 /// samples of traced rays.
 class LoneDot {
  public:
   static constexpr int sample_count = 4;        ///< number of independent samples of rays
   static constexpr int largest_sample = 65536;  ///< maximum number of rays per sample whose landing the table predicts
-  static constexpr int predicted_per_traced = 8;  ///< of these rays, one in so many is also traced
+  static constexpr int predicted_per_traced = 8;  ///< number of predicted rays per traced ray
 
+  /// @param all    scene and plan; its dots are replaced
   /// @param place  position on the target [m]
   /// @param side   side of the windows [px]
-  LoneDot(Scene const& scene, Vec2d place, int side);
+  LoneDot(FocusedDots const& all, Vec2d place, int side);
 
   /// Returns true if the table does not cover the dot.
   bool is_uncovered() const { return seen_.kind == DotKind::left; }
   /// Adds rays to the samples until each has the given number, and updates their differences.
   void compare_with_rays(int rays);
-  /// Light of the window in both images, the reference image first.
+  /// Returns the light of the rendering in the pixel windows of both images, the reference image first.
   std::vector<double> const& light() const { return light_; }
-  /// Difference of sample k.
+  /// Returns the difference of sample k from the rendering.
   Difference const& difference(int k) const { return difference_[k]; }
 
  private:
@@ -63,7 +67,7 @@ class LoneDot {
 
   Scene scene_;
   int side_;                        ///< side of the pixel windows [px]
-  std::vector<RaySample> samples_;  ///< none for a dot that the medium does not move
+  std::vector<RaySample> samples_;  ///< independent samples of rays; none for a dot that the medium does not move
   std::unique_ptr<DeflectionMap> table_;
   std::unique_ptr<OwnedDotModel> owned_;
   std::unique_ptr<DotIntegrator> integrator_;

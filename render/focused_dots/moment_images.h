@@ -51,7 +51,7 @@ struct MomentLattice {
 struct DotSquares {
   static constexpr int most_step = 4;
   MomentLattice lattice;
-  int step = 1;           ///< side of a square in squares of the sensor's lattice
+  int step = 1;           ///< side of one of the dot's squares, as a multiple of the side of the sensor's squares
   Vec2<int> first{0, 0};  ///< sensor's square at the dot's square (0, 0)
   Vec2d zero{};           ///< zero displacement relative to that square's centre [px]
 
@@ -107,7 +107,7 @@ struct Extent {
   }
 };
 
-/// Range of squares that a distribution of displacements covers.
+/// Range of the squares (DotSquares) that a dot's displacements cover.
 struct SquareRange {
   static constexpr int most = 576;  ///< maximum number of squares that are processed one by one
   Vec2<int> low{0, 0}, high{0, 0};
@@ -151,8 +151,8 @@ struct MomentImages {
   int stride = 0;                  ///< distance between images in `values`
   double const* values = nullptr;  ///< [phase y][phase x][moment][term][row, column]
 
-  /// Plans the images of a source with a Gaussian PSF; `values` remain to be computed. Returns an empty plan if they
-  /// would need more than 64 MiB or the PSF is too wide.
+  /// Determines size and number of the images of a source with a Gaussian PSF, without their `values`. Returns no
+  /// images if they would need more than 64 MiB or the PSF is too wide.
   /// @param half_px  half size of the source's image [px]
   /// @param side  maximum side of a square [px]
   /// @param terms  6, or 1 for a point
@@ -240,7 +240,7 @@ GLADSTONE_HD void add_to_images(Group const& group, MomentImages const& images, 
   }
 }
 
-/// Computes the images of a plan on all CPU cores.
+/// Computes the images of plan() on all CPU cores.
 /// @param source  points in units of half_px, with weights of sum one
 std::vector<double> make_moment_images(MomentImages const& plan, CubatureView const& source, double half_px,
                                        GaussianSpot<double> const& spot);

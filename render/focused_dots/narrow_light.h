@@ -3,10 +3,11 @@
 #include "render/focused_dots/dot_model.h"
 #include "render/focused_dots/spot_factors.h"
 
-/// Light of a source's disc, computed point by point by a group of lanes (OneLane, or a device's).
+/// Image of a disc-shaped source, computed point by point by a group of lanes: OneLane on the CPU, a block of threads
+/// on a GPU.
 namespace gladstone {
 
-/// Work space of a team for one point, in numbers.
+/// Returns the size of a team's work space for one point [numbers].
 GLADSTONE_HD constexpr int point_numbers(int orders, int pitch) {
   return 2 * orders * pitch + DisplacementMoments::count;
 }

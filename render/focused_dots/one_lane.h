@@ -40,7 +40,7 @@ struct OneLane {
     int before, all;
   };
   static Same same(int) { return {0, 1}; }
-  /// Returns the sum over the lower lanes.
+  /// Returns the sum of `value` over the lower lanes.
   /// @param all  receives the sum over all lanes
   static int sum_below(int value, int& all) {
     all = value;

@@ -84,7 +84,7 @@ PlaceRule make_place_rule(bool extended, SourceShape shape) {
   return rule;
 }
 
-/// Returns the light of a white dot on the axis [fully lit px]; that of a point equals a disc of one pixel's area.
+/// Returns the light of a white dot on the axis [fully lit px]; a point has the light of a disc of one pixel's area.
 double light_of_dot(double half_size_px, SourceShape shape) {
   if (half_size_px == 0) return 1;
   return (shape == SourceShape::disc ? pi : 4) * half_size_px * half_size_px;
@@ -95,6 +95,7 @@ double light_of_dot(double half_size_px, SourceShape shape) {
 OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources, DeflectionTable const& table,
                              bool with_images, MomentImagesBy by) {
   Scene const& scene = dots.scene();
+  RenderPlan const& plan = dots.plan();
   model.axis_px = scene.to_pixel({});
   model.columns = scene.setup.camera.columns;
   model.rows = scene.setup.camera.rows;
@@ -107,9 +108,9 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   model.table = table;
   // The finest length of a closed form is not a grid cell but the length of a wave's whole slope.
   bool const closed_form = scene.medium.grid.nodes[0] <= 1;
-  model.cone.fine = closed_form || scene.fineness > 1;
+  model.cone.fine = closed_form || plan.fineness > 1;
   double const radius = scene.medium.finest > 0 ? table.way * model.stop_radius / scene.medium.finest : 0;
-  make_cone_rule(radius, scene.fineness, closed_form ? 2 : 1, cone_points, cone_directions);
+  make_cone_rule(radius, plan.fineness, closed_form ? 2 : 1, cone_points, cone_directions);
   model.cone.points = cone_points.data();
   model.cone.directions = cone_directions.data();
   model.cone.count = static_cast<int>(cone_points.size());
@@ -121,7 +122,7 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   model.places = make_place_rule(sources.half_size > 0, sources.shape);
 
   bool const given = scene.setup.render.rays_per_dot.has_value();
-  std::uint64_t const asked = std::min(scene.rays_per_dot, most_given_rays);
+  std::uint64_t const asked = std::min(plan.rays, most_given_rays);
   // round up to whole warps
   std::uint64_t const wanted = given ? asked : (std::max<std::uint64_t>(asked, 1) + 31) / 32 * 32;
   model.choice.seed = scene.setup.render.seed;

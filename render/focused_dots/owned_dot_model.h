@@ -8,7 +8,8 @@
 
 namespace gladstone {
 
-/// Device on which the moment images are computed: the host, or another one that requires only their plan.
+/// Device on which the moment images are computed: the host, or another one, for which only MomentImages::plan() is
+/// called.
 enum class MomentImagesBy { host, device };
 
 /// Imaging model of a scene's dots together with the cubature rules that it refers to.
@@ -19,7 +20,7 @@ struct OwnedDotModel {
   std::vector<ConePoint> cone_points;
   std::vector<Vec2d> cone_directions, cone_scattered;
 
-  /// @param sources  the scene's dots, or others
+  /// @param sources  dots to be rendered: the scene's, or others
   /// @param table  deflection table of the scene; must outlive the model
   /// @param with_images  false: moment images are not computed
   OwnedDotModel(FocusedDots const& dots, DotPattern const& sources, DeflectionTable const& table, bool with_images,

@@ -5,13 +5,14 @@
 
 namespace gladstone {
 
-/// Computes the PSF factors of some points along both axes, as GaussianSpot::taylor_shares(), by a group of lanes.
-/// Eight lanes compute the values at the pixel edges of one axis, whose differences are the pixels; a single lane (CPU)
-/// processes whole vectors of pixels.
+/// Computes the PSF factors of some points along both axes, like GaussianSpot::taylor_shares(), by a group of lanes. On
+/// a device, eight lanes process one axis of a point: they integrate the PSF up to the pixel edges, and the factor of a
+/// pixel is the difference between its two edges. On the CPU, a single lane processes whole vectors of pixels.
 /// @param at_point  returns the position of the i-th point [px]
-/// @param room  receives [point][axis][order][pitch]; on a single lane with zeros beyond the last pixel of the PSF
+/// @param room  output: factors [point][axis][order][pitch]; on a single lane with zeros beyond the last pixel of the
+/// PSF
 /// @param pitch  width of the PSF plus one, or the number of pixels that a lane processes together
-/// @param apart  distance between points in `room`
+/// @param apart  stride between the points in `room`
 template <int orders, class Group, class Place>
 GLADSTONE_HD void spot_factors(Group const& group, GaussianSpot<double> const& spot, Place const& at_point, int points,
                                int pitch, int apart, double* room) {

@@ -2,8 +2,8 @@
 
 #include "render/focused_dots/cone_integral.h"
 
-/// Light of a dot whose displacements are sorted into squares (MomentImages), computed by a group of lanes (OneLane, or
-/// a device's).
+/// Light of a dot whose displacements are sorted into squares (MomentImages), computed by a group of lanes: OneLane on
+/// the CPU, a block of threads on a GPU.
 namespace gladstone {
 
 /// Work space shared by a group's lanes.
@@ -23,13 +23,14 @@ struct SquareSums {
 
 /// Nodes of a wide dot's light cone.
 struct ConePoints {
-  ConeLight* light;       ///< [place][count]
-  unsigned short* order;  ///< [place][count] nodes sorted by square
+  ConeLight* light;       ///< contributions of the nodes, [place][count]
+  unsigned short* order;  ///< indices of the nodes, sorted by square, [place][count]
   int count;
 };
 
-/// Sorts the nodes of one point of the source by their squares, by a team. The order within a square is retained.
-/// @param ends  receives the end of each square's nodes
+/// Sorts the nodes of a light cone by the square that contains their displacement, for one point of the source. The
+/// order of the nodes within a square is retained. Called by all lanes of a team.
+/// @param ends  output: end of each square's nodes in the sorted order
 template <class Team>
 GLADSTONE_HD void sort_points(Team const& team, DotSquares const& squares, SquareRange const& range,
                               ConeLight const* light, int count, unsigned short* order, unsigned short* ends) {
@@ -115,7 +116,7 @@ GLADSTONE_HD void sum_squares(Group const& group, DotModel const& model, Correct
 
 /// Adds the light of some squares of the same phase to the patch.
 /// @tparam pixels  number of pixels that a lane processes together
-/// @pre sums.shares are those of these squares
+/// @pre sums.shares contains the weights for these squares
 template <int pixels, class Group, int abreast, class Patch>
 GLADSTONE_HD void add_squares(Group const& group, MomentImages const& images, DotSquares const& squares,
                               unsigned short const* list, int here, SquareSums<abreast> const& sums, Patch& patch) {
@@ -138,7 +139,7 @@ GLADSTONE_HD void add_squares(Group const& group, MomentImages const& images, Do
       if (first < all && which < here) {
         patch.add_run(images.footprint(squares.on_sensor(sums.range.square(list[which]))), first, light[which]);
       }
-      group.sync_team();  // footprints of squares overlap
+      group.sync_team();  // wait: the next square may cover the same pixels
     }
   }
 }

@@ -48,9 +48,9 @@ struct Deviation {
   }
   /// Returns the root of a mean of `count` squared deviations.
   double rms(double count) const { return std::sqrt(std::max(square, 0.0) / count); }
-  /// Returns its detection limit: the root of two standard errors of the mean at zero deviation. With k samples of
-  /// variance v, the squared mean has the variance 2 v^2 / k^2 and v / k that of 2 v^2 / (k^2 (k - 1)); their sum is
-  /// 2 v^2 / (k (k - 1)).
+  /// Returns the detection limit of rms(): the root of two standard errors of the mean at zero deviation. With k
+  /// samples of variance v, the squared mean has the variance 2 v^2 / k^2 and v / k that of 2 v^2 / (k^2 (k - 1));
+  /// their sum is 2 v^2 / (k (k - 1)).
   /// @param independent  number of independent values among `count`
   double detection_limit(double count, double independent) const {
     double const of_one = std::sqrt(2.0 / (LoneDot::sample_count * (LoneDot::sample_count - 1)));
@@ -85,7 +85,7 @@ double light_of_a_level(LoneDots const& lone, CameraSetup const& camera, double 
   if (camera.exposure_e) return light_per_level(camera, *camera.exposure_e);
   double brightest = 0;
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
-    double sum = 0, squares = 0;  // per dot
+    double sum = 0, squares = 0;  // mean over dots of the light, and of its square, added up over pixels
     for (auto const& dot : lone) {
       std::size_t const area = dot->light().size() / frame_count;
       for (std::size_t i = frame * area; i < (frame + 1) * area; ++i) {
@@ -149,7 +149,7 @@ std::vector<Vec2d> measured_places(Scene const& scene) {
 TableError measure_table_error(FocusedDots const& dots) {
   Scene const& scene = dots.scene();
   TableError error;
-  error.fineness = scene.fineness;
+  error.fineness = dots.plan().fineness;
   error.bits = error_bit_depth(scene.setup.camera);
   double const px = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
   double const pitch_px = 2 * scene.dots.half_size * px;  // pitch of an image target's pixels, which are adjacent
@@ -160,7 +160,7 @@ TableError measure_table_error(FocusedDots const& dots) {
   LoneDots lone(places.size());
   Progress progress("measuring the table", lone.size());
   parallel_for(lone.size(), [&](std::size_t i) {
-    lone[i] = std::make_unique<LoneDot>(scene, places[i], side);
+    lone[i] = std::make_unique<LoneDot>(dots, places[i], side);
     progress.advance();
   });
   std::erase_if(lone, [](auto const& dot) { return dot->is_uncovered(); });
@@ -175,51 +175,47 @@ TableError measure_table_error(FocusedDots const& dots) {
 
 double table_seconds(FocusedDots const& dots) {
   Scene const& scene = dots.scene();
-  DeflectionTableLayout const plan(dots, scene.dots,
-                                   DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
-  if (!plan.wanted()) return 0;
-  double const of_table = 4.0 * static_cast<double>(plan.table.fours());
+  DeflectionTableLayout const layout(dots, scene.dots,
+                                     DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
+  if (!layout.wanted()) return 0;
+  double const of_table = 4.0 * static_cast<double>(layout.table.fours());
   double const measured = static_cast<double>(place_count) * LoneDot::sample_count * LoneDot::largest_sample /
                           LoneDot::predicted_per_traced;
-  return (of_table + measured) * ray_seconds(scene);
+  return (of_table + measured) * ray_seconds(scene, dots.plan());
 }
 
 double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
   constexpr double a_node = 0.1e-6;  // look-ups at a node of the cone [s]
   Scene const& scene = dots.scene();
-  DeflectionTableLayout const plan(dots, scene.dots,
-                                   DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
-  if (plan.state == TableState::no_medium) return 0;
-  OwnedDotModel const owned(dots, scene.dots, plan.table, false);
+  DeflectionTableLayout const layout(dots, scene.dots,
+                                     DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
+  if (layout.state == TableState::no_medium) return 0;
+  OwnedDotModel const owned(dots, scene.dots, layout.table, false);
   double const nodes = static_cast<double>(owned.model.cone.count) * owned.model.places.count;
-  double const of_node = (plan.wanted() ? a_node : 0) + (theory == RenderTheory::yes ? theory_ray_seconds(scene) : 0);
-  double const of_dot = static_cast<double>(scene.rays_per_dot) * ray_seconds(scene) + nodes * of_node;
+  double const of_node =
+      (layout.wanted() ? a_node : 0) + (theory == RenderTheory::yes ? theory_ray_seconds(scene, dots.plan()) : 0);
+  double const of_dot = static_cast<double>(dots.plan().rays) * ray_seconds(scene, dots.plan()) + nodes * of_node;
   return table_seconds(dots) + static_cast<double>(scene.source_count()) * of_dot;
 }
 
-RayBudget determine_ray_budget(FocusedDots const& dots) {
-  RayBudget budget;
+RenderPlan plan_rays_by_table(FocusedDots const& dots) {
+  RenderPlan plan = dots.plan();
   if (auto const given = dots.scene().setup.render.rays_per_dot) {
-    budget.rays = *given;
-    return budget;
+    plan.rays = *given;
+    return plan;
   }
-  Scene searched = dots.scene();  // copy in which fineness and number of rays are varied
-  FocusedDots const here = focused_dots(searched).value();
-  searched.rays_per_dot = initial_table_rays;
-  searched.fineness = 1;
+  plan.rays = initial_table_rays;
   double last = std::numeric_limits<double>::infinity();
   while (true) {
-    TableError const error = measure_table_error(here);
-    budget.rays = searched.rays_per_dot;
-    budget.fineness = searched.fineness;
-    budget.table_error = error;
-    if (error.excess() <= 1) return budget;
-    if (searched.fineness == 1) {
-      searched.fineness = 2;
+    TableError const error = measure_table_error(focused_dots(dots.scene(), plan).value());
+    plan.table_error = error;
+    if (error.excess() <= 1) return plan;
+    if (plan.fineness == 1) {
+      plan.fineness = 2;
     } else {  // More rays do not reduce the error of the table itself.
-      if (searched.rays_per_dot >= 512 || error.excess() > worth_more_rays * last) return budget;
+      if (plan.rays >= 512 || error.excess() > worth_more_rays * last) return plan;
       last = error.excess();
-      searched.rays_per_dot *= 4;
+      plan.rays *= 4;
     }
   }
 }

@@ -4,11 +4,10 @@
 #include "render/scene/ray_budget.h"
 #include "render/scene/renderer.h"
 
-/// Error of truth and images due to the deflection table, and the number of rays per dot that correct it. The scene is
-/// not changed.
+/// Error of truth and images due to the deflection table, and the number of rays per dot that correct it.
 namespace gladstone {
 
-/// Measures the errors of truth and images at the scene's current number of rays and fineness.
+/// Measures the errors of truth and images at the plan's number of rays and fineness.
 /// White dots at 16 positions spread over the view, independent of the scene's dots, are rendered with their own
 /// deflection tables, identical to the scene's where they overlap, and compared with four independent samples of 16,384
 /// rays. The table predicts where these land, and an eighth of them is traced to correct the prediction (control
@@ -17,15 +16,16 @@ namespace gladstone {
 /// target, of adjacent squares. Positions that the table does not cover are ignored.
 TableError measure_table_error(FocusedDots const& dots);
 
-/// Number of rays per dot with which determine_ray_budget() starts.
+/// Number of rays per dot with which plan_rays_by_table() starts.
 inline constexpr std::uint64_t initial_table_rays = 32;
 
-/// Determines the number of rays per dot that correct the table, and the fineness of table and rules.
+/// Completes a plan that has a step with the number of rays per dot that correct the table, and the fineness of table
+/// and rules.
 /// A number given in the setup is used unchanged. Otherwise it starts at 32 rays. If the errors exceed 1e-3 px
 /// rms in the truth or half a grey level in images, table and rules are refined by a factor of two; then 128 and 512
 /// rays are tried, as long as each step reduces the error by at least 30 %. Dots with large scatter use up to 256 rays
-/// (DotModel). The budget contains the remaining error of the table.
-RayBudget determine_ray_budget(FocusedDots const& dots);
+/// (DotModel). The plan contains the remaining error of the table.
+RenderPlan plan_rays_by_table(FocusedDots const& dots);
 
 /// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].
 /// The table has the same number of rays for a hundred dots as for thousands.

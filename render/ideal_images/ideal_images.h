@@ -51,7 +51,7 @@ class ImageDrawer {
   virtual std::string device() const = 0;
   /// Returns the light of both frames. A pixel adds up its contributions in the order of the images. Images without
   /// light are ignored.
-  /// @param shape  with the footprint of all images
+  /// @param shape  PSF whose footprint is used for all images
   virtual std::shared_ptr<RenderedLight const> draw(std::array<std::vector<ParticleImage>, 2> const& images,
                                                     GaussianSpot<double> const& shape, int columns, int rows) = 0;
 };

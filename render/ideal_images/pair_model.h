@@ -17,11 +17,11 @@
 
 namespace gladstone {
 
-/// Choice of the exposure of a pair, as choose_exposure() makes it for a scene.
+/// Choice of the exposure of a pair, equal to that of choose_exposure() for a scene.
 struct ExposureRule {
   double fixed_e = 0;       ///< electrons per unit of light; 0: from the brightest pixel
   double brightest_e = 0;   ///< charge of the brightest pixel [e]
-  double full_well_e = 0;   ///< electrons per unit of light of dark frames [e]
+  double full_well_e = 0;   ///< electrons per unit of light if both frames are dark [e]
   double per_photon = 0;    ///< quantum efficiency [e], an upper limit; infinity: no limit
   bool by_photons = false;  ///< true: electrons = photons times quantum efficiency
 
@@ -50,24 +50,26 @@ struct PairModel {
   Vec3d center{}, volume{};  ///< seeded volume [m]
   Vec3d box{};               ///< size of the box about `center` that contains the particles at mid-time [m]
   DiameterSpread spread = DiameterSpread::one;
-  double diameter = 1e-6, diameter_width = 0;  ///< see DiameterSetup
-  double density = 0, viscosity = 1;           ///< of lagging particles [kg/m^3], and of the gas [Pa s]; 0: no lag
+  double diameter = 1e-6, diameter_width = 0;  ///< parameters of the diameters, see DiameterSetup
+  double density = 0, viscosity = 1;           ///< density of lagging particles [kg/m^3], viscosity of the gas [Pa s];
+                                               ///< 0: no lag
   // motion
   Flow flow;
   double dt = 0;        ///< time between the pulses [s]
-  double interval = 0;  ///< see ParticleVelocity [s]
+  double interval = 0;  ///< time step of the differences along the flow, see ParticleVelocity [s]
   int steps = 1;        ///< integration steps per half path
   // light and camera
   LaserSheet<double> sheet;
   Pose<double> sheet_plane;  ///< Scene::sheet_plane()
   ParticleScattering scattering = ParticleScattering::gaussian;
-  MieScatteringView<double> mie;  ///< of the one diameter, index 0; for ParticleScattering::mie
+  MieScatteringView<double> mie;  ///< scattering of the only diameter, index 0; for ParticleScattering::mie
   LensLight lens;
   IdealProjection projection;
   DefocusBlur blur;
-  GaussianSpot<double> spot;  ///< with the footprint of all images: the widest one that is not faint
+  GaussianSpot<double> spot;  ///< PSF whose footprint is used for all images: that of the widest image that is not
+                              ///< faint
   ExposureRule exposure;
-  PixelDetector detector;  ///< without electrons per light and seed, which differ between pairs
+  PixelDetector detector;  ///< detector of all pairs, without electrons per light and seed, which are set for each pair
 
   GLADSTONE_HD ParticleVelocity velocity(double d) const {
     return {flow, density > 0 ? stokes_response_time(density, d, viscosity) : 0.0, interval};
@@ -101,9 +103,10 @@ struct PairModel {
   }
 
   /// Returns the displacement [px] of the particle in the middle of the sheet at mid-time whose image in frame A is at
-  /// a pixel, as particle_displacements() of the comparison does with TruthAt::reference. The particle is found by
-  /// fixed-point iteration, to 1e-9 px, from where the flow carries the sheet's point at the pixel in half the time: in
-  /// a flow along the sheet that is the particle. NaN if the pixel sees no point of the sheet.
+  /// a pixel. This is the truth of particle_displacements() with TruthAt::reference. The particle is found to 1e-9 px
+  /// by fixed-point iteration. The iteration starts at the point of the sheet seen at the pixel, moved with the flow
+  /// for half the time between the pulses; this is the solution if the flow is parallel to the sheet. NaN if the pixel
+  /// sees no point of the sheet.
   GLADSTONE_HD Vec2d displacement(Vec2d pixel) const {
     using std::abs;
     ParticleVelocity const moving = velocity(diameter);
@@ -132,7 +135,7 @@ struct PairModel {
 struct OwnedPairModel {
   PairModel model;
   std::shared_ptr<std::vector<float> const> velocity;  ///< coefficients of a velocity file; null: none
-  std::shared_ptr<MieScattering const> mie;            ///< for ParticleScattering::mie
+  std::shared_ptr<MieScattering const> mie;            ///< scattering table for ParticleScattering::mie; null: none
 };
 
 /// Returns the reason why the pairs of a setup have no PairModel; empty if they have one.
@@ -140,7 +143,7 @@ std::string reason_against_pair_model(Setup const& setup);
 
 /// Builds the model of a setup. The number of integration steps and the angles of Mie scattering are chosen from the
 /// particles of the setup's own seed.
-/// @throws DataError if the setup has none, or its velocity file cannot be read
+/// @throws DataError if the setup has no PairModel, or its velocity file cannot be read
 OwnedPairModel build_pair_model(Setup const& setup);
 
 }  // namespace gladstone

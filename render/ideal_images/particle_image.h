@@ -22,11 +22,11 @@ struct ParticleImage {
 /// sigma^2 + r^2/4, the sum of the variances along an axis. The error is largest in the centre. With t = r^2 / (2
 /// sigma^2) and relative to the PSF, the centre of the image is (1 - exp(-t)) / t = 1 - t/2 + t^2/6 - ..., and that of
 /// the approximation is 1 / (1 + t/2) = 1 - t/2 + t^2/4 - ...: too bright by less than t^2/12 = (r / (2 sigma))^4 / 3.
-/// If the light changes over the stop by a share g from its centre to its edge, the image of rays is r g / 4 off the
-/// projection, in both frames. This is neglected.
+/// If the light changes over the stop by a fraction g from its centre to its edge, the image by rays is displaced by r
+/// g / 4 from the projection, in both frames. This is neglected.
 struct DefocusBlur {
   double sigma = 1;   ///< standard deviation of the PSF [px]
-  double lens_z = 1;  ///< Z [m]
+  double lens_z = 1;  ///< distance Z in focus [m]
   double reach = 0;   ///< M D / 2 [px]; 0: the blur is neglected
 
   /// Returns the radius of the circle of confusion of a point [px]. @param z  its position on the axis [m]
@@ -47,10 +47,10 @@ struct DefocusBlur {
   }
 };
 
-/// Error of images, relative to the centre of the brightest one, up to which they are as accurate as those of rays:
+/// Blur error, relative to the centre of the brightest image, up to which images are as accurate as ray-traced ones:
 /// half a grey level of 12 bits.
 inline constexpr double accurate_blur_error = 0.5 / 4095;
-/// Light relative to that of the brightest image below which the margins of blurred images may be cut off.
+/// Light, relative to the brightest image, below which the margins of blurred images may be cut off.
 inline constexpr double faint_image = 1e-4;
 
 }  // namespace gladstone

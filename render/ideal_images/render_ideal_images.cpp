@@ -94,7 +94,7 @@ void draw_band(std::span<ParticleImage const> spots, std::size_t band, GaussianS
   for (int row = 0; row < rows; ++row) std::copy_n(light.pixel(0, row), image.columns(), &image(0, top + row));
 }
 
-/// Returns the widest of the images that are not faint, whose footprint all images have.
+/// Returns the PSF of the widest image that is not faint. Its footprint is used for all images.
 GaussianSpot<double> find_widest(std::array<std::vector<ParticleImage>, frames> const& spots, double sigma) {
   double brightest = 0;
   for (auto const& frame : spots)
@@ -162,7 +162,6 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
   }
   Rendering rendering;
   rendering.table = TableState::by_formula;
-  rendering.method = RenderMethod::formula;
   rendering.truth = truth_of(particles, spots);
   if (images == RenderImages::no) return rendering;
   double const unit = photon_unit(scene, particles, light);

@@ -10,7 +10,8 @@
 namespace gladstone {
 namespace {
 
-constexpr double most_dots = 1e6;  // per plane; on a sensor of 100 megapixels such dots are 10 px apart
+constexpr double most_dots = 1e6;  // maximum number of dots per plane; on a sensor of 100 megapixels such dots are 10
+                                   // px apart
 constexpr std::size_t most_planes = 999;
 
 /// Returns the number of dots on each side of the central one along an axis.

@@ -52,12 +52,12 @@ FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& sho
   return setup;
 }
 
-std::string load_flow(FlowSetup& setup) {
+Warnings load_flow(FlowSetup& setup) {
   if (!setup.file || setup.owner) return {};
   LoadedVelocity loaded = load_velocity(*setup.file);
   setup.owner = std::move(loaded.coefficients);
   setup.flow.kind = loaded.flow;
-  return loaded.warning;
+  return loaded.warnings;
 }
 
 bool velocity_known(FlowSetup const& setup, Vec3d place) {

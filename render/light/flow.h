@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/base/one_of.h"
+#include "render/base/warning.h"
 #include "render/light/flows/file.h"
 #include "render/light/flows/jet.h"
 #include "render/light/flows/lamb_oseen.h"
@@ -76,9 +77,9 @@ FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& sho
                           std::optional<double> dt = std::nullopt);
 
 /// Loads the velocity file of a field of kind "file", which has zero velocity until then. Does nothing for other kinds.
-/// @return warning about assumptions made in reading the file; empty: none
+/// @return warnings about assumptions made in reading the file
 /// @throws DataError
-std::string load_flow(FlowSetup& setup);
+Warnings load_flow(FlowSetup& setup);
 
 /// Returns false if a point [m] is outside the velocity field of a file, where the velocity is extrapolated.
 bool velocity_known(FlowSetup const& setup, Vec3d place);

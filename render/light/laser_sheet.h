@@ -26,7 +26,7 @@ struct LaserSetup {
   Vec3d normal{0, 0, 1};        ///< normal of the sheet, unit vector perpendicular to `direction`
   Vec3d centre{};               ///< point on the sheet's axis at which the height is `height` [m]
   SheetProfile profile = SheetProfile::gaussian;
-  double thickness = 1e-3;         ///< [m]
+  double thickness = 1e-3;         ///< thickness of the sheet, see SheetProfile [m]
   double height = 40e-3;           ///< height at the centre; the light is uniform over it [m]
   double divergence = 0;           ///< full divergence angle in the plane of the sheet [rad]
   double polarization = 0;         ///< angle of the electric field to the plane of the sheet, towards the normal [rad]

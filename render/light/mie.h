@@ -29,8 +29,8 @@ struct MieAmplitudes {
 /// Bohren & Huffman, Absorption and Scattering of Light by Small Particles (1983), eq. 4.88 and appendix A: downward
 /// recurrence of the logarithmic derivative of psi_n, with Wiscombe's number of terms (Appl. Opt. 19 (1980) 1505). The
 /// time factor is exp(-i omega t), so that an absorbing sphere has m = n + i k with k >= 0.
-/// Unlike there, psi_n for n > x is computed from the ratio psi_n / psi_(n-1), and the downward recurrence starts 8 |m
-/// x|^(1/3) orders above |m x|; both preserve the last digits for the smallest and the largest spheres.
+/// Unlike in appendix A, psi_n for n > x is computed from the ratio psi_n / psi_(n-1), and the downward recurrence
+/// starts 8 |m x|^(1/3) orders above |m x|; both preserve the last digits for the smallest and the largest spheres.
 class MieCoefficients {
  public:
   /// @param x  size parameter pi d n / lambda, n the index of the surrounding medium, lambda the vacuum wavelength [1]

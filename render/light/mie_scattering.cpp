@@ -126,7 +126,7 @@ MieScattering::MieScattering(std::vector<double> const& diameters, MieSetting co
   if (sizes.empty()) return;
   GLADSTONE_EXPECTS(sizes.front() >= 0);
 
-  constexpr double always_there = 64e6;  // [bytes]; smaller tables are allocated without a check
+  constexpr double always_there = 64e6;  // [bytes], up to which tables are allocated without a check
   double const bytes = bytes_of(sizes, diameters.size(), setting, angles);
   double const available = available_memory();
   if (bytes > always_there && bytes > available) {

@@ -42,7 +42,7 @@ struct MieTable {
 template <class T>
 struct MieScatteringView {
   std::uint32_t const* table_of = nullptr;  ///< index into `table` of every particle
-  MieTable const* table = nullptr;          ///< one entry per distinct diameter
+  MieTable const* table = nullptr;          ///< tables, one per distinct diameter
   float const* coefficient = nullptr;       ///< cubic B-spline coefficients of |S1|^2 and |S2|^2 [1]
   T least_angle{};                          ///< smallest scattering angle of the table [rad]
   T inverse_wave_number2{};                 ///< 1/k^2, k the wave number in the surrounding medium [m^2]

@@ -5,7 +5,7 @@
 #include "render/base/random_variates.h"
 #include "render/light/particle_setup.h"
 
-/// Random properties of one particle, functions of its keys alone, for host and device.
+/// Random properties of one particle, as functions of the seed and the particle's index only, for host and device.
 namespace gladstone {
 
 /// Draws a diameter [m] from one of the closed-form distributions, always positive.

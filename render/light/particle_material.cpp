@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_index = 0.01;  // lower limit of the real part; metals have 0.05 or more
+constexpr double least_index = 0.01;  // lower limit of the index's real part; metals have 0.05 or more
 
 /// Sellmeier equation: returns sqrt(1 + sum of B L^2 / (L^2 - C)), wavelength L in um and C in um^2.
 /// @param wavelength  [m]

@@ -38,7 +38,8 @@ void ParticleSequence::start() {
 
 ParticleSequence::Places ParticleSequence::draw(std::size_t frame, Region region) const {
   Vec3d const volume = *setup_.volume;
-  Vec3d const wider = volume + 4.0 * motion_margin(flow_, volume, setup_.center);  // the margin is that of dt / 2
+  // a margin for a whole interval on both sides; motion_margin() is for half an interval on one side
+  Vec3d const wider = volume + 4.0 * motion_margin(flow_, volume, setup_.center);
   double const share = wider.x * wider.y * wider.z / (volume.x * volume.y * volume.z);
   auto const drawn = static_cast<std::size_t>(std::llround(count_ * share * draws_per_particle(setup_, flow_)));
   std::uint64_t const seed = drawing_seed(setup_.seed, frame);

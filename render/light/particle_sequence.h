@@ -5,17 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/light/particles.h"
 
 namespace gladstone {
 
 /// Particles of a sequence of frames at equal intervals flow.dt, each advected from frame to frame along the flow.
 /// - The particles of the first frame fill the volume, as those of seed_particles() do. Particles that leave it are
-///   dropped. Before every step, further particles are drawn around the volume, and those that enter it are added, so
-///   that the number density remains that of the seeding.
-/// - Particles of a file are not replaced. Without a volume all of them stay.
+/// dropped. Before every step, further particles are drawn around the volume, and those that enter it are added, so
+/// that the number density remains that of the seeding.
+/// - Particles of a file are not replaced. Without a volume all of them are retained.
 /// - A particle depends on the seed, the frame in which it was drawn and its index only, so that a frame is the same in
-///   both pairs to which it belongs, for any number of threads.
+/// both pairs to which it belongs, for any number of threads.
 class ParticleSequence {
  public:
   /// @param count      mean number of particles in the volume; ignored for particles of a file
@@ -40,7 +41,8 @@ class ParticleSequence {
   enum class Region { volume, surroundings };
 
   void start();
-  /// Draws the particles of a frame in the volume, or those around it from where the volume can be reached within dt.
+  /// Draws the particles of a frame inside the volume, or in the surroundings from which particles can reach the volume
+  /// within dt.
   Places draw(std::size_t frame, Region region) const;
   /// Returns all particles of the current and the next frame, without their light.
   Particles move() const;
@@ -61,8 +63,8 @@ class ParticleSequence {
 /// a time.
 struct ParticleCache {
   std::optional<ParticleSequence> sequence;
-  std::string flow_warning;  ///< warning from loading the flow
-  double photon_unit = 0;    ///< brightest particle of the first pair [photons]; 0: not computed
+  Warnings flow_warnings;  ///< warnings from loading the flow
+  double photon_unit = 0;  ///< brightest particle of the first pair [photons]; 0: not computed
 };
 
 }  // namespace gladstone

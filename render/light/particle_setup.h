@@ -28,7 +28,7 @@ struct DiameterSetup {
   DiameterSpread spread = DiameterSpread::one;
   double middle = 1e-6;  ///< single diameter, median (lognormal) or mean (normal) [m]
   double width = 0;      ///< standard deviation of ln(diameter) [1] (lognormal) or of the diameter [m] (normal)
-  std::string file;      ///< CSV diameter_um,weight of a table
+  std::string file;      ///< CSV file with the columns diameter_um,weight, for DiameterSpread::table
 };
 
 /// Returns the Stokes response time of a sphere in a gas, rho_p d^2 / (18 mu) [s].
@@ -40,7 +40,7 @@ GLADSTONE_HD constexpr double stokes_response_time(double density, double diamet
 struct ParticleSetup {
   ParticleCount count = ParticleCount::number;
   double amount = 20000;        ///< number; number density [1/mm^3]; number per pixel of the first camera [1/px]
-  std::string file;             ///< CSV x_mm,y_mm,z_mm,diameter_um of ParticleCount::file
+  std::string file;             ///< CSV file with the columns x_mm,y_mm,z_mm,diameter_um, for ParticleCount::file
   std::optional<Vec3d> volume;  ///< size of the seeded box about `center` [m]; empty: unlimited (file only)
   Vec3d center{};               ///< centre of the seeded box [m]
   DiameterSetup diameter;

@@ -34,7 +34,7 @@ struct SourcesView {
 GLADSTONE_HD inline std::uint64_t random_key(Vec2d centre) {
   using std::floor;
   auto const nanometres = [](double at) {
-    constexpr double farthest = 9e18;  // [nm], within the range of a 64-bit integer
+    constexpr double farthest = 9e18;  // largest coordinate [nm], within the range of a 64-bit integer
     double const whole = floor(1e9 * at + 0.5);
     double const within = whole < -farthest ? -farthest : (whole < farthest ? whole : farthest);
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(within));
@@ -55,7 +55,8 @@ GLADSTONE_HD constexpr int scrambling_bits(std::uint64_t rays) {
   return rays >= 4 ? 2 : (rays >= 2 ? 1 : 0);
 }
 
-/// Returns the number of points per scrambling of which both rays of a pair are traced.
+/// Returns the number of points per scrambling for which both rays of a pair (AimedRay of opposite source positions)
+/// are traced.
 GLADSTONE_HD constexpr std::uint32_t complete_points(std::uint64_t rays, int scrambling_bits) {
   return static_cast<std::uint32_t>(rays >> (scrambling_bits + 1));
 }
@@ -65,7 +66,7 @@ struct BundleView {
   std::uint64_t seed = 0;
   PupilSampling sampling = PupilSampling::sobol;
   int scrambling_bits = 0;           ///< ray j is point j >> bits of scrambling j mod 2^bits
-  std::uint32_t ordered_points = 0;  ///< number of points per scrambling, the first ones, that ordered_point() permutes
+  std::uint32_t ordered_points = 0;  ///< number of leading points of each scrambling that ordered_point() permutes
 };
 
 /// Computes the sample coordinates of a ray, each in [0, 1): pupil radius^2 and angle, source radius^2 and angle.

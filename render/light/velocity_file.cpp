@@ -161,16 +161,17 @@ LoadedVelocity load_velocity(VelocityFile const& setup) {
   std::string const assumed = setup.spacing ? "" : source->units().assumed();
   if (!assumed.empty()) {
     double const mm = unit::millimetre;
-    loaded.warning = fmt::format(
-        "flow.file: of {} in {} {} (the field is {:.4g} x {:.4g} mm wide); if that is wrong, give flow.spacing_mm",
-        source->name(), setup.file, assumed, grid.spacing.x * (grid.nodes[0] - 1) / mm,
-        grid.spacing.y * (grid.nodes[1] - 1) / mm);
+    loaded.warnings.push_back(
+        {WarningCode::assumed, "flow.file",
+         fmt::format("of {} in {} {} (the field is {:.4g} x {:.4g} mm wide); if that is wrong, give flow.spacing_mm",
+                     source->name(), setup.file, assumed, grid.spacing.x * (grid.nodes[0] - 1) / mm,
+                     grid.spacing.y * (grid.nodes[1] - 1) / mm)});
   }
-  std::vector<std::string> notes = source->notes();
-  if (!unit.warning.empty()) notes.push_back(unit.warning + "; if that is wrong, give flow.scale");
-  for (std::string const& note : notes) {
-    loaded.warning += fmt::format("{}flow.file: {}: {}", loaded.warning.empty() ? "" : "; ", setup.file, note);
-  }
+  Warnings notes = source->notes();
+  if (!unit.warning.empty())
+    notes.push_back({WarningCode::assumed, "", unit.warning + "; if that is wrong, give flow.scale"});
+  for (Warning const& note : notes)
+    loaded.warnings.push_back({note.code, "flow.file", setup.file + ": " + to_string(note)});
   return loaded;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/field_file.h"
 #include "render/light/flows/file.h"
 
@@ -33,8 +34,8 @@ double velocity_bytes(VelocityFile const& setup);
 /// Velocity field in memory.
 struct LoadedVelocity {
   std::shared_ptr<std::vector<float> const> coefficients;
-  FileFlow flow;        ///< view of `coefficients`
-  std::string warning;  ///< assumptions made in reading the file and data that were ignored; empty: none
+  FileFlow flow;      ///< view of `coefficients`
+  Warnings warnings;  ///< assumptions made in reading the file, and data that were ignored
 };
 
 /// Reads a velocity file and computes the coefficients of a cubic B-spline through its nodes. Open axes have not-a-knot

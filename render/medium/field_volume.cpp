@@ -55,16 +55,24 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   return grid;
 }
 
-/// Returns a warning about units of length that were assumed; empty if they are known or the setup gives the spacing.
-std::string assumed_lengths(FieldSetup const& field, FieldSource const& source, RegularGrid const& grid) {
+/// Returns a warning about units of length that were assumed; nullopt if they are known or the setup gives the spacing.
+std::optional<Warning> assumed_lengths(FieldSetup const& field, FieldSource const& source, RegularGrid const& grid) {
   std::string const assumed = field.spacing ? "" : source.units().assumed();
   if (assumed.empty()) return {};
   double const mm = unit::millimetre;
-  return fmt::format(
-      "medium.field.file: of {} in {} {} (the field is {:.4g} x {:.4g} mm wide); if that is wrong, give "
-      "medium.field.spacing_mm",
-      source.name(), field.file, assumed, grid.spacing.x * (grid.nodes[0] - 1) / mm,
-      grid.spacing.y * (grid.nodes[1] - 1) / mm);
+  return Warning{
+      WarningCode::assumed, "medium.field.file",
+      fmt::format(
+          "of {} in {} {} (the field is {:.4g} x {:.4g} mm wide); if that is wrong, give medium.field.spacing_mm",
+          source.name(), field.file, assumed, grid.spacing.x * (grid.nodes[0] - 1) / mm,
+          grid.spacing.y * (grid.nodes[1] - 1) / mm)};
+}
+
+/// Returns the notes of a file as warnings about the key that names it.
+Warnings notes_of_file(FieldSetup const& field, FieldSource& source) {
+  Warnings warnings = source.notes();
+  for (Warning& note : warnings) note = {note.code, "medium.field.file", field.file + ": " + to_string(note)};
+  return warnings;
 }
 
 /// Returns the factor from file values to kg/m^3 or to dimensionless numbers: the setup's if given, else that of the
@@ -74,27 +82,30 @@ ValueFactor value_factor(FieldSetup const& field, FieldUnits const& units) {
   return units.value_factor(field.quantity == FieldQuantity::density ? dimension_of_density : dimension_of_numbers);
 }
 
-/// Returns a warning if a file contains n itself with so few bits that n - 1 is inaccurate; empty otherwise.
+/// Returns a warning if a file contains n itself with so few bits that n - 1 is inaccurate.
 /// @param scale      factor applied to the values in the file
 /// @param low, high  smallest and largest refractivity
-std::string lost_digits(FieldSetup const& field, FieldSource const& source, double scale, double low, double high) {
+std::optional<Warning> lost_digits(FieldSetup const& field, FieldSource const& source, double scale, double low,
+                                   double high) {
   int const bits = source.significant_bits();
   if (field.quantity != FieldQuantity::refractive_index || bits > std::numeric_limits<float>::digits) return {};
   double const largest = (1 + high) / std::abs(scale);
   double const step = std::abs(scale) * std::ldexp(1.0, std::ilogb(largest) + 1 - bits);
-  return fmt::format(
-      "medium.field.quantity: {} of {} stores refractive indices with {} bits, so that n - 1 is resolved in steps of "
-      "only {:.2g}, {:.2g} % of its range in this field (the lost digits cannot be recovered, and gradients are "
-      "noisy); write the file as refractivity (n - 1) or density, or in double precision",
-      source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
+  return Warning{
+      WarningCode::low_accuracy, "medium.field.quantity",
+      fmt::format("{} of {} stores refractive indices with {} bits, so that n - 1 is resolved in steps of only {:.2g}, "
+                  "{:.2g} % of its range in this field (the lost digits cannot be recovered, and gradients are noisy); "
+                  "write the file as refractivity (n - 1) or density, or in double precision",
+                  source.name(), field.file, bits, step, 100 * step / std::max(high - low, step))};
 }
 
-/// Returns a warning if the values suggest another quantity or unit; empty otherwise. They do if all of them differ
+/// Returns a warning if the values suggest another quantity or unit. They do if all of them differ
 /// from the ambient value by more than a factor of 100, which is implausible for gas flows at one pressure, or if
 /// densities look like refractive indices.
 /// @param scale      factor applied to the values in the file
 /// @param low, high  smallest and largest refractivity
-std::string unlikely_range(MediumSetup const& setup, std::string const& name, double scale, double low, double high) {
+std::optional<Warning> unlikely_range(MediumSetup const& setup, std::string const& name, double scale, double low,
+                                      double high) {
   FieldSetup const& field = setup.field;
   double const ambient = setup.ambient_refractivity();
   if (!(ambient > 0) || low < 0) return {};
@@ -107,7 +118,7 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
   if (index) {
     likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";
   } else if (high < ambient / factor) {
-    // among the readings within a factor of ten of the ambient value, suggest the closest
+    // Among the interpretations within a factor of ten of the ambient value, suggest the closest one.
     auto const decades_off = [&](double ratio) {
       bool const fits = high * ratio > ambient / 10 && low * ratio < ambient * 10;
       return fits ? std::abs(std::log10(0.5 * (low + high) * ratio / ambient)) : HUGE_VAL;
@@ -127,11 +138,10 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
     return {};
   }
   if (likely.empty()) likely = "check medium.field.quantity, scale and medium.ambient_density_kg_m3";
-  return fmt::format(
-      "medium.field.quantity: the values of {} in {} reach from {:.6g} to {:.6g}{}, where the ambient has "
-      "{:.4g}{}; {}",
-      name, field.file, low / unit, high / unit, density ? " kg/m^3" : " (n - 1)", ambient / unit,
-      density ? " kg/m^3" : "", likely);
+  return Warning{WarningCode::implausible, "medium.field.quantity",
+                 fmt::format("the values of {} in {} reach from {:.6g} to {:.6g}{}, where the ambient has {:.4g}{}; {}",
+                             name, field.file, low / unit, high / unit, density ? " kg/m^3" : " (n - 1)",
+                             ambient / unit, density ? " kg/m^3" : "", likely)};
 }
 
 double finest_cell(FieldSetup const& field, RegularGrid const& grid) {
@@ -176,23 +186,19 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
                                 source.name(), 1 + volume->lowest(), 1 + volume->highest()));
   }
   BuiltMedium built;
-  for (std::string const& note : source.notes()) {
-    built.warnings.push_back(fmt::format("medium.field.file: {}: {}", field.file, note));
-  }
+  built.warnings = notes_of_file(field, source);
   if (!factor.warning.empty()) {
-    built.warnings.push_back(
-        fmt::format("medium.field.file: {}: {}; if that is wrong, give medium.field.scale or "
-                    "medium.field.quantity",
-                    field.file, factor.warning));
+    built.warnings.push_back({WarningCode::assumed, "medium.field.file",
+                              fmt::format("{}: {}; if that is wrong, give medium.field.scale or medium.field.quantity",
+                                          field.file, factor.warning)});
   }
-  std::string odd = unlikely_range(setup, source.name(), factor.factor, volume->lowest(), volume->highest());
-  if (!odd.empty()) built.warnings.push_back(std::move(odd));
+  auto const odd = unlikely_range(setup, source.name(), factor.factor, volume->lowest(), volume->highest());
+  auto const lost = lost_digits(field, source, factor.factor, volume->lowest(), volume->highest());
+  for (auto const& warning : {odd, lost, assumed_lengths(field, source, grid)}) {
+    if (warning) built.warnings.push_back(*warning);
+  }
   built.lowest = volume->lowest();
   built.highest = volume->highest();
-  std::string lost = lost_digits(field, source, factor.factor, volume->lowest(), volume->highest());
-  if (!lost.empty()) built.warnings.push_back(std::move(lost));
-  std::string assumed = assumed_lengths(field, source, grid);
-  if (!assumed.empty()) built.warnings.push_back(std::move(assumed));
   Bounds<double> const box = field_bounds(setup, grid);
   if (spline) {
     built.view = volume->template view<double, CubicBspline, Dimensions>(box.low.z, box.high.z);
@@ -235,16 +241,12 @@ std::size_t medium_bytes_needed(MediumSetup const& setup) {
                             : RefractiveIndexVolume<float>::bytes_needed(grid);
 }
 
-std::vector<std::string> header_warnings(MediumSetup const& setup) {
+Warnings header_warnings(MediumSetup const& setup) {
   FieldSetup const& field = setup.field;
   if (field.kind != FieldKind::file) return {};
   auto const source = open_file(field);
-  std::vector<std::string> warnings;
-  for (std::string const& note : source->notes()) {
-    warnings.push_back(fmt::format("medium.field.file: {}: {}", field.file, note));
-  }
-  std::string assumed = assumed_lengths(field, *source, world_grid(field, *source));
-  if (!assumed.empty()) warnings.push_back(std::move(assumed));
+  Warnings warnings = notes_of_file(field, *source);
+  if (auto const assumed = assumed_lengths(field, *source, world_grid(field, *source))) warnings.push_back(*assumed);
   return warnings;
 }
 

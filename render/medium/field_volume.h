@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/medium/medium.h"
 #include "render/medium/medium_setup.h"
 
@@ -21,7 +22,7 @@ struct BuiltMedium {
   double steepest = 0;                ///< upper bound of |grad n|, if known [1/m]
   RegularGrid grid;                   ///< grid of a file's field
   double lowest = 0, highest = 0;     ///< range of n - 1 at the nodes of a file's field [1]
-  std::vector<std::string> warnings;  ///< limitations of the file's data
+  Warnings warnings;                  ///< limitations of the file's data
 };
 
 /// Returns the memory required for the field of a setup [bytes]; opens a file and reads its header.
@@ -36,7 +37,7 @@ double steps_across(MediumSetup const& setup);
 
 /// Returns the warnings that follow from the header of a field's file: assumed units of length, and notes on its
 /// reading. Empty for other fields. @throws DataError if the file cannot be read
-std::vector<std::string> header_warnings(MediumSetup const& setup);
+Warnings header_warnings(MediumSetup const& setup);
 
 /// Returns the region of a file's field [m]; reads the file's header. @throws DataError if the file cannot be read
 Bounds<double> file_bounds(MediumSetup const& setup);

@@ -27,7 +27,7 @@ constexpr double squared_wavenumber(double wavelength) {
 }
 
 /// Returns K from the refractivity at 0 C and 101325 Pa.
-/// @param virial  second virial coefficient there [m^3/mol]
+/// @param virial  second virial coefficient at 0 C [m^3/mol]
 constexpr double constant_of(double refractivity, double molar_mass, double virial) {
   return refractivity * molar_volume * (1 + virial / molar_volume) / molar_mass;
 }
@@ -67,7 +67,7 @@ double cauchy(double a, double b, double wavelength) { return a * (1 + b * squar
 double methane(double wavelength) { return constant_of(cauchy(42.6e-5, 14.41e-3, wavelength), methane_mass, -53.4e-6); }
 
 double oxygen(double wavelength) {
-  // Zhang's refractivity holds at 20 C, where the gas is thinner.
+  // Zhang's refractivity holds at 20 C, where the density is lower.
   double const at_20_degrees = 1.181494e-4 + 9.708931e-3 / (75.4 - squared_wavenumber(wavelength));
   return constant_of(at_20_degrees * (293.15 / 273.15), oxygen_mass, -17e-6);
 }
@@ -88,7 +88,7 @@ constexpr std::array all_gases{Gas{"air", air_mass, &gladstone_dale_ciddor},
                                Gas{"oxygen", oxygen_mass, &oxygen},
                                Gas{"water", water_mass, &water}};
 
-/// Chemical formulas of the gases, in the same order; empty: a mixture.
+/// Chemical formulas of the gases, in the order of all_gases; empty: a mixture.
 constexpr std::array<char const*, all_gases.size()> formulas{"", "Ar", "CO2", "He", "H2", "CH4", "N2", "O2", "H2O"};
 
 /// Reports gases that are named by their formula, in upper or lower case.
@@ -153,7 +153,7 @@ GasMixture read_gas_mixture(SetupTable& medium, double wavelength) {
   // NaN if a fraction is wrong, which is reported already
   double sum = refuse_formulas(table) ? not_a_number : 0.0;
   for (std::size_t i = 0; i < fractions.size(); ++i) {
-    std::string const name(all_gases[i].name);
+    std::string const name(gases()[i].name);
     fractions[i] = table.number(name, table.has(name) ? not_a_number : 0.0, Range::at_least(0.0, 1.0));
     sum += fractions[i];
   }

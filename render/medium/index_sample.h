@@ -14,8 +14,8 @@ struct IndexSample {
 /// Box that a medium fills. Rays are straight outside of it. Infinite axes extend to +-unbounded.
 template <class T>
 struct Bounds {
-  Vec3<T> low;   ///< [m]
-  Vec3<T> high;  ///< [m]
+  Vec3<T> low;   ///< corner with the smallest coordinates [m]
+  Vec3<T> high;  ///< corner with the largest coordinates [m]
 };
 
 inline constexpr double unbounded = 1e30;  ///< [m]; finite, so that differences of bounds are not NaN

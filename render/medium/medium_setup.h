@@ -86,7 +86,7 @@ double radius_along_z(FieldSetup const& field);
 /// The slab's faces truncate the displacement of these Gaussian fields by a fraction erfc(half thickness / radius),
 /// which is 7e-7 at seven radii.
 double automatic_thickness_mm(FieldSetup const& field);
-/// Like above, for the thicker one of the fields of the two pulses.
+/// Returns the larger of the automatic thicknesses of the fields of both pulses [mm].
 double automatic_thickness_mm(MediumSetup const& setup);
 
 /// Returns the fraction of a field's displacement that is lost by truncation at the slab's faces [1]: erfc(half

@@ -39,8 +39,8 @@ struct RayState {
 /// Increments of one step, in addition to the free flight R + T dt.
 template <class T>
 struct StepIncrement {
-  Vec3<T> position;           ///< [m]
-  Vec3<T> optical_direction;  ///< [1]
+  Vec3<T> position;           ///< increment of R [m]
+  Vec3<T> optical_direction;  ///< increment of T [1]
   T optical_path{};           ///< integral of n ds = n^2 dt over the step [m]
   Vec3<T> last_force;         ///< D = n grad n at the end of the step [1/m]
 };
@@ -48,7 +48,7 @@ struct StepIncrement {
 /// Force D = n grad n = grad(n^2)/2 at a point (Rajendran et al. 2019, eq. 6), and n^2.
 template <class T>
 struct Force {
-  Vec3<T> d;  ///< [1/m]
+  Vec3<T> d;  ///< force D [1/m]
   T n2;       ///< n^2 [1]
 };
 template <class T>

@@ -147,7 +147,7 @@ GLADSTONE_HD bool refract_component(Vec3<T> direction, T from_n2, T to_n2, int a
 template <class T>
 struct PartialStep {
   bool leaves;  ///< false: the whole step is inside
-  T step;       ///< [m]
+  T step;       ///< step dt to the exit, or the whole step [m]
   StepIncrement<T> add;
   int axis;  ///< axis normal to the exit face
 };

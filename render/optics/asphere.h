@@ -26,7 +26,7 @@ GLADSTONE_HD bool intersect_asphere(Shape const& shape, Ray<T> const& ray, T& wa
     Vec3<T> const up = shape.gradient(p);
     T const change = height / dot(up, ray.direction);
     T const size = change < T(0) ? -change : change;
-    if (!(size < last)) return size < T(tolerance);  // also for NaN, beyond the extent of the conic
+    if (!(size < last)) return size < T(tolerance);  // detects also NaN, beyond the extent of the conic
     way = way - change;
     last = size;
     if (size == T(0)) return true;

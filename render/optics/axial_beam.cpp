@@ -34,7 +34,7 @@ struct AxialBeam {
 };
 
 /// Returns a warning if a ray travels backwards through glass.
-std::optional<std::string> told_backwards(Lens const& lens, Ray<double> ray) {
+std::optional<Warning> told_backwards(Lens const& lens, Ray<double> ray) {
   RayAccount<double> account;
   double begun = 0;  // optical path at the last surface that deflected the ray
   for (int i = 0; i < lens.view().count; ++i) {
@@ -47,17 +47,19 @@ std::optional<std::string> told_backwards(Lens const& lens, Ray<double> ray) {
     double const way = (account.optical_path - begun) / n;
     begun = account.optical_path;
     if (i == 0 || n == 1 || way > -least_backwards) continue;
-    return fmt::format(
-        "{}: surface {}: the axial beam meets it {:.4g} mm ahead of the preceding face, at a height of {:.4g} mm: the "
-        "faces cross within the beam, which is impossible; make the glass thicker, or the stop narrower",
-        lens.prescription.surfaces[at].where, i + 1, -way / unit::millimetre, height / unit::millimetre);
+    return Warning{
+        WarningCode::inconsistent, lens.prescription.surfaces[at].where,
+        fmt::format(
+            "surface {}: the axial beam meets it {:.4g} mm ahead of the preceding face, at a height of {:.4g} mm: the "
+            "faces cross within the beam, which is impossible; make the glass thicker, or the stop narrower",
+            i + 1, -way / unit::millimetre, height / unit::millimetre)};
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<std::string> crossed_faces(Lens const& lens, double object_distance) {
+std::optional<Warning> crossed_faces(Lens const& lens, double object_distance) {
   auto const beam = AxialBeam::of(lens, object_distance);
   if (!beam) return std::nullopt;
   for (int k = 1; k <= beam_heights; ++k) {

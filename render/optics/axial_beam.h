@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "render/base/warning.h"
 #include "render/optics/lens.h"
 
 namespace gladstone {
@@ -11,7 +12,7 @@ namespace gladstone {
 /// element cross within the beam. The warning names the second face; nullopt if no faces cross. Vignetted rays
 /// are ignored.
 /// @param object_distance  distance from the object to the first vertex [m]
-std::optional<std::string> crossed_faces(Lens const& lens, double object_distance);
+std::optional<Warning> crossed_faces(Lens const& lens, double object_distance);
 
 /// Returns the radius of the widest axial beam that is not vignetted by the edges of the surfaces, on the tangent plane
 /// of the first vertex [m]; nullopt if the stop is the only limit.

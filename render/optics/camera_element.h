@@ -37,8 +37,8 @@ struct PosedStop {
   }
 };
 
-/// Ideal thin lens with any pose. Light propagates along its +z axis. Exact in slopes (a collinear map), and hence free
-/// of aberrations for every object plane.
+/// Ideal thin lens with any pose. Light propagates along its +z axis. It maps slopes exactly (collinear map), and hence
+/// is free of aberrations for every object plane.
 template <class T>
 struct PosedThinLens {
   Pose<T> pose;
@@ -74,7 +74,7 @@ template <class... First, class... Second, class... Lists>
 struct OneOfLists<SurfaceTypes<First...>, SurfaceTypes<Second...>, Lists...>
     : OneOfLists<SurfaceTypes<First..., Second...>, Lists...> {};
 
-/// Stop, ideal thin lens, surfaces of lenses, and the surfaces that only one of the optical elements has.
+/// Stop, ideal thin lens, surfaces of lenses, and surface types that only one kind of optical element defines.
 template <class T, class Kinds>
 struct CameraElements;
 template <class T, class... Kinds>

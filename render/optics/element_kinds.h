@@ -28,7 +28,7 @@ struct ElementKinds {};
 ///   the element
 /// - image_f_number(): f-number of these images, on which their diffraction depends [1]
 /// - to_sensor: distance from the image plane of the lens, in which it is placed, to the sensor [m]
-/// - imaging_warning(imaging, f_number): warning about an unsuitable lens; empty: none
+/// - imaging_warning(imaging, f_number): warning about an unsuitable lens; nullopt: none
 /// - root_table, camera_table: name of a table at the root, or of the camera, that is an element of this kind
 using AllElements = ElementKinds<OpticalWindow, WedgePrism, LensletSetup>;
 

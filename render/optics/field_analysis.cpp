@@ -131,7 +131,7 @@ double paraxial_image(Lens const& lens, ParaxialLens const& paraxial) {
   double const distance = lens.prescription.object_distance;
   if (!std::isfinite(distance)) return paraxial.back_focal_length;
   RayTransfer const m = ray_transfer(lens, 0, static_cast<int>(lens.paraxial.size()));
-  // from the axial object point: y = distance, n u = n. The reduced distance is multiplied by n', negative after a
+  // Ray from the axial object point: y = distance, n u = n. The reduced distance is multiplied by n', negative after a
   // mirror.
   double const n = lens.object_index;
   return -lens.paraxial.back().n_after * (m.a * distance + m.b * n) / (m.c * distance + m.d * n);

@@ -29,12 +29,12 @@ struct FieldPoint {
   double tangential_focus = 0;  ///< tangential focus of a narrow bundle about the chief ray, from the image plane [m]
   double sagittal_focus = 0;    ///< sagittal focus, from the image plane [m]
   double vignetting = 0;        ///< fraction of the rays through the stop that do not reach the image [1]
-  std::vector<SurfaceRayLoss> lost;  ///< sorted by surface, then by reason
+  std::vector<SurfaceRayLoss> lost;  ///< lost rays, sorted by surface, then by reason
 };
 
 /// Analysis of a lens over its field.
 struct FieldAnalysis {
-  double image_plane = 0;  ///< behind the last vertex: prescribed image distance, else paraxial image [m]
+  double image_plane = 0;  ///< position behind the last vertex: prescribed image distance, else paraxial image [m]
   std::vector<FieldPoint> points;
 };
 

@@ -37,7 +37,7 @@ struct Glass {
   std::string catalogue;  ///< file name without folder and extension
   std::string where{};    ///< file:line of its entry in the catalogue; empty: defined by a prescription
   DispersionFormula formula = DispersionFormula::schott;
-  std::vector<double> coefficients;  ///< in the order of the formula, for wavelengths in micrometres
+  std::vector<double> coefficients;  ///< coefficients in the order of the formula, for wavelengths in micrometres
   double shortest = 0;               ///< shortest wavelength of the formula's range of validity [m]
   double longest = 0;                ///< longest wavelength of the formula's range of validity [m]
   struct Transmission {
@@ -45,7 +45,7 @@ struct Glass {
     double transmission;  ///< internal transmittance [1]
     double thickness;     ///< thickness to which it refers [m]
   };
-  std::vector<Transmission> transmission;  ///< in order of wavelength; may be empty
+  std::vector<Transmission> transmission;  ///< samples of the transmission in order of wavelength; may be empty
   struct Sample {
     double wavelength;  ///< [m]
     double index;       ///< [1]

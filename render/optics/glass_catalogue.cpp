@@ -56,9 +56,9 @@ struct Choice {
   Glass const* glass = nullptr;     ///< chosen glass
   bool in_no_catalogue = false;     ///< no catalogue contains the name
   bool followed = false;            ///< the glasses are successors
-  bool listed = false;              ///< its catalogue is in the lens file's list, or the file has no list
-  bool added = false;               ///< its catalogue was added
-  bool ambiguous = false;           ///< another glass has a different index
+  bool listed = false;              ///< the catalogue of the glass is in the lens file's list, or the file has no list
+  bool added = false;               ///< the catalogue of the glass was added
+  bool ambiguous = false;           ///< another glass comes first in order, or has a different index
 
   /// Describes the assumptions made: "may be A, B, with different indices; A is taken"; empty if none was made.
   std::string text(std::vector<std::string> const& list, std::optional<double> stated_nd) const {
@@ -76,7 +76,8 @@ struct Choice {
     if (reasons.empty()) return {};
     std::string taken = place_of(*glass);
     if (followed) taken += ", which followed it,";
-    if (glass != found.front()) taken += fmt::format(", which has the nd = {:.6g} of its line,", stated_nd.value_or(0));
+    if (glass != found.front())
+      taken += fmt::format(", which has the nd = {:.6g} stated in the lens file,", stated_nd.value_or(0));
     taken += " is taken";
     if (followed && !listed) taken += fmt::format(", although the lens file lists only {}", fmt::join(list, ", "));
     return fmt::format("{}; {}", fmt::join(reasons, " and "), taken);
@@ -105,15 +106,17 @@ void GlassCatalogue::add(std::string_view text, std::string const& catalogue, st
                     "contains no glass (a catalogue in the AGF format has lines NM, CD and LD)");
   }
   if (!out.empty()) {
-    warnings_.push_back(fmt::format("{}:{}: {} of {} glasses cannot be used and {} ignored: {}", file,
-                                    out[0].fault.line, out.size(), out.size() + content.glasses.size(),
-                                    out.size() == 1 ? "is" : "are", list_left_out(out)));
+    warnings_.push_back(
+        {WarningCode::ignored, fmt::format("{}:{}", file, out[0].fault.line),
+         fmt::format("{} of {} glasses cannot be used and {} ignored: {}", out.size(),
+                     out.size() + content.glasses.size(), out.size() == 1 ? "is" : "are", list_left_out(out))});
   }
   if (!content.skipped_lines.empty()) {
     warnings_.push_back(
-        fmt::format("{}:{}: {} lines IT do not consist of a transmittance and a positive thickness, and are ignored "
-                    "(the first: {})",
-                    file, content.skipped_lines[0].line, content.skipped_lines.size(), content.skipped_lines[0].text));
+        {WarningCode::ignored, fmt::format("{}:{}", file, content.skipped_lines[0].line),
+         fmt::format(
+             "{} lines IT do not consist of a transmittance and a positive thickness, and are ignored (the first: {})",
+             content.skipped_lines.size(), content.skipped_lines[0].text)});
   }
   for (Glass& glass : content.glasses) glass.where = fmt::format("{}:{}", file, glass.where);
   for (AgfContent::LeftOut const& one : out) {
@@ -279,15 +282,16 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
 
   GlassMatch result{&glass, {}, choice.followed || (!is_preferred(&glass) && !choice.added)};
   if (std::string const text = choice.text(preferred, stated_nd); !text.empty()) {
-    result.notes.push_back(fmt::format("{}: glass \"{}\" {}", where, name, text));
+    result.notes.push_back({WarningCode::assumed, where, fmt::format("glass \"{}\" {}", name, text)});
   }
   constexpr double d = spectral_line::d;
   // values of 0 and 1 are placeholders
   bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;
   if (printed && std::abs(glass.nd() - glass.printed_nd) > same_index) {
     result.notes.push_back(
-        fmt::format("{}: glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is used",
-                    where, glass.catalogue, glass.name, glass.nd(), glass.printed_nd));
+        {WarningCode::inconsistent, where,
+         fmt::format("glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is used",
+                     glass.catalogue, glass.name, glass.nd(), glass.printed_nd)});
   }
   return result;
 }

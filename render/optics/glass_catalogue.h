@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/optics/glass.h"
 
 namespace gladstone {
@@ -12,8 +13,8 @@ namespace gladstone {
 /// Result of a search for a glass name.
 struct GlassMatch {
   Glass const* glass;
-  std::vector<std::string> notes;  ///< warnings about assumptions that were made
-  bool assumed = false;            ///< a successor, or from a shipped catalogue that the lens file does not list
+  Warnings notes;        ///< warnings about assumptions that were made
+  bool assumed = false;  ///< a successor, or from a shipped catalogue that the lens file does not list
 };
 
 /// Returns true if the nd of a glass equals the one that a lens file states to within the file's rounding (1e-3), or if
@@ -45,7 +46,7 @@ class GlassCatalogue {
   /// Returns all glasses, those of added catalogues first. Valid until the next catalogue is added.
   std::vector<Glass const*> glasses() const;
   /// Warnings about skipped glasses and lines of all added catalogues.
-  std::vector<std::string> const& warnings() const { return warnings_; }
+  Warnings const& warnings() const { return warnings_; }
 
   /// Returns the glass with the given name, ignoring case and hyphens. "CATALOGUE:NAME" selects a catalogue, as does
   /// CODE V's "NAME_CATALOGUE" if no glass has the complete name. If several catalogues contain the name, the order is:
@@ -79,7 +80,7 @@ class GlassCatalogue {
   /// Returns the glasses that a name in the syntax of match() can refer to.
   std::vector<Glass const*> candidates(std::string_view name) const;
 
-  /// Returns the glasses that followed a name: those of its name with N- ahead of it.
+  /// Returns the lead-free successors of a name: glasses with this name preceded by "N-".
   std::vector<Glass const*> successors(std::string_view name) const;
   struct FullName {
     std::string key, catalogue, name;
@@ -93,7 +94,7 @@ class GlassCatalogue {
     std::string name, reason;
   };
   std::vector<LeftOut> left_out_;
-  std::vector<std::string> warnings_;
+  Warnings warnings_;
 };
 
 }  // namespace gladstone

@@ -51,7 +51,7 @@ class LensBuilder {
       before = after;
       if (last && (way != 0 || lens_.prescription.ends_at_image)) lens_.image_distance = way;
     }
-    std::vector<std::string> const notes = media_.finish();
+    Warnings const notes = media_.finish();
     lens_.warnings.insert(lens_.warnings.end(), notes.begin(), notes.end());
   }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/lens_surface.h"
 #include "render/optics/prescription.h"
@@ -63,7 +64,7 @@ struct Lens {
   double stop_radius = 0;                ///< radius of the stop for real rays [m]
   double paraxial_stop_radius = 0;       ///< radius of the stop for paraxial pupils [m]
   std::optional<double> image_distance;  ///< behind the last surface [m]; empty: not prescribed
-  std::vector<std::string> warnings;
+  Warnings warnings;
 
   LensView<double> view() const { return {surfaces.data(), static_cast<int>(surfaces.size())}; }
 };

@@ -44,7 +44,7 @@ LensMedium LensMedia::find(PrescribedMedium const& medium, std::string const& su
   return {};
 }
 
-std::vector<std::string> LensMedia::finish() {
+Warnings LensMedia::finish() {
   refuse_glasses();
   note_described_glasses();
   return std::move(warnings_);
@@ -53,7 +53,7 @@ std::vector<std::string> LensMedia::finish() {
 Glass LensMedia::named_glass(PrescribedMedium::Named const& named, std::string const& where) {
   std::string const& name = named.glass;
   std::vector<std::string> const& listed = prescription_.catalogues;
-  if (!named.otherwise) return found_glass(catalogue_.match(name, wavelength_, where, listed), name, where);
+  if (!named.otherwise) return found_glass(catalogue_.match(name, wavelength_, where, listed), name);
   double const nd = named.otherwise->nd, vd = named.otherwise->vd;
   std::string const line_taken = fmt::format(
       "nd = {:.6g} and Vd = {:.4g} of its line are used for n = A + B/lambda^2 (add its catalogue for better "
@@ -61,31 +61,32 @@ Glass LensMedia::named_glass(PrescribedMedium::Named const& named, std::string c
       nd, vd);
   std::string const key = fmt::format("{} {:.6g} {:.4g}", name, nd, vd);
   if (!catalogue_.has(name)) {
-    note_once(key, fmt::format("{}: glass \"{}\" is in no catalogue; {}", where, name, line_taken));
+    note_once(key, {WarningCode::assumed, where, fmt::format("glass \"{}\" is in no catalogue; {}", name, line_taken)});
     return Glass::from_nd_vd(nd, vd);
   }
   GlassMatch const match = catalogue_.match(name, wavelength_, where, listed, nd);
   Glass const& glass = *match.glass;
-  if (agrees_with_nd(glass, nd)) return found_glass(match, name, where);
-  std::string const contradiction =
-      fmt::format("{}: glass \"{}\": {} has nd = {:.6g}", where, name, place_of(glass), glass.nd());
+  if (agrees_with_nd(glass, nd)) return found_glass(match, name);
+  std::string const contradiction = fmt::format("glass \"{}\": {} has nd = {:.6g}", name, place_of(glass), glass.nd());
   if (match.assumed) {
-    note_once(key, fmt::format("{}; {}", contradiction, line_taken));
+    note_once(key, {WarningCode::inconsistent, where, fmt::format("{}; {}", contradiction, line_taken)});
     return Glass::from_nd_vd(nd, vd);
   }
-  note_once(key, fmt::format("{}, but its line says nd = {:.6g}; the catalogue's glass is used (if the line is "
-                             "right, list the catalogue of its glass first in GCAT)",
-                             contradiction, nd));
+  note_once(key, {WarningCode::inconsistent, where,
+                  fmt::format("{}, but its line says nd = {:.6g}; the catalogue's glass is used (if the line is right, "
+                              "list the catalogue of its glass first in GCAT)",
+                              contradiction, nd)});
   return glass;
 }
 
-Glass LensMedia::found_glass(GlassMatch const& match, std::string const& name, std::string const& where) {
-  for (std::string const& note : match.notes) note_once(name + note.substr(where.size()), note);
+Glass LensMedia::found_glass(GlassMatch const& match, std::string const& name) {
+  for (Warning const& note : match.notes)
+    note_once(name + place_of(*match.glass) + std::string(warning_code_name(note.code)), note);
   return *match.glass;
 }
 
-void LensMedia::note_once(std::string const& key, std::string const& text) {
-  if (noted_.insert(key).second) warnings_.push_back(text);
+void LensMedia::note_once(std::string const& key, Warning const& warning) {
+  if (noted_.insert(key).second) warnings_.push_back(warning);
 }
 
 void LensMedia::refuse_glasses() const {
@@ -108,12 +109,12 @@ void LensMedia::note_described_glasses() {
   for (DescribedGlass const& glass : described_) {
     names.push_back(one ? glass.name : fmt::format("{} (line {})", glass.name, line_in_file(glass.where)));
   }
-  warnings_.push_back(fmt::format(
-      "{}: {} {} approximated by n = A + B/lambda^2, accurate to about 1e-3 away from 587.6 nm; name {} of a "
-      "catalogue for better accuracy",
-      described_.front().where,
-      one ? "glass " + names.front() : fmt::format("{} glasses ({})", names.size(), fmt::join(names, "; ")),
-      one ? "is" : "are", one ? "a glass" : "glasses"));
+  warnings_.push_back({WarningCode::approximated, described_.front().where,
+                       fmt::format("{} {} approximated by n = A + B/lambda^2, accurate to about 1e-3 away from 587.6 "
+                                   "nm; name {} of a catalogue for better accuracy",
+                                   one ? "glass " + names.front()
+                                       : fmt::format("{} glasses ({})", names.size(), fmt::join(names, "; ")),
+                                   one ? "is" : "are", one ? "a glass" : "glasses")});
 }
 
 }  // namespace gladstone

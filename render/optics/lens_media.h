@@ -22,7 +22,7 @@ class LensMedia {
  public:
   /// @param prescription,catalogue  must outlive this object
   /// @param wavelength              [m]
-  /// @param absorption              determine the absorption of glass as well
+  /// @param absorption              true: the absorption of glass is determined as well
   LensMedia(Prescription const& prescription, GlassCatalogue const& catalogue, double wavelength, bool absorption)
       : prescription_(prescription), catalogue_(catalogue), wavelength_(wavelength), absorption_(absorption) {}
 
@@ -30,14 +30,14 @@ class LensMedia {
   /// @param surface_where  file and line of the surface, named in messages about media that share the surface's line
   LensMedium find(PrescribedMedium const& medium, std::string const& surface_where);
 
-  /// Returns a glass of a catalogue, or the one with nd and Vd of its line if no catalogue contains it or if an assumed
-  /// one contradicts them. Adds one warning about the choice.
+  /// Returns the catalogue's glass of this name. If no catalogue contains the name, or if an assumed glass contradicts
+  /// the nd and Vd of the line, returns a glass with this nd and Vd. Adds one warning about the choice.
   /// @throws DataError if the glass is unknown or not valid at this wavelength
   Glass named_glass(PrescribedMedium::Named const& named, std::string const& where);
 
   /// Returns the warnings about the glasses found.
   /// @throws DataError if a glass is unknown or not valid at this wavelength; SetupError that lists several of them
-  std::vector<std::string> finish();
+  Warnings finish();
 
  private:
   /// Glass specified by nd and Vd only.
@@ -47,10 +47,10 @@ class LensMedia {
   };
 
   /// Returns the glass of a search and adds its notes, each once for a name.
-  Glass found_glass(GlassMatch const& match, std::string const& name, std::string const& where);
+  Glass found_glass(GlassMatch const& match, std::string const& name);
 
   /// Adds a warning about a glass, unless the glass already has one.
-  void note_once(std::string const& key, std::string const& text);
+  void note_once(std::string const& key, Warning const& warning);
 
   /// Throws an error that lists all glasses that are unknown or not valid at this wavelength, with their locations.
   void refuse_glasses() const;
@@ -65,7 +65,7 @@ class LensMedia {
   GlassCatalogue const& catalogue_;
   double wavelength_;
   bool absorption_;
-  std::vector<std::string> warnings_;
+  Warnings warnings_;
   std::vector<SetupProblem> not_found_;    ///< unknown glasses
   std::vector<DescribedGlass> described_;  ///< glasses specified by nd and Vd only
   std::set<std::string> noted_;            ///< glasses with a warning

@@ -60,7 +60,7 @@ GlassCatalogue read_glasses(LensSetup const& setup, SetupTable table) {
 }
 
 void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const& glasses, double wavelength,
-                        std::optional<double> object_distance, std::vector<std::string>& warnings) {
+                        std::optional<double> object_distance, Warnings& warnings) {
   LensOptions options;
   options.object_distance = object_distance;
   options.fresnel = setup.transmittance != Transmittance::ideal;

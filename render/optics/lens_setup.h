@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/base/warning.h"
 #include "render/optics/lens.h"
 #include "render/setup/setup_table.h"
 
@@ -21,9 +22,10 @@ enum class Transmittance {
 /// Table [lens] of a setup, in SI.
 struct LensSetup {
   double focal_length = 0.105;  ///< focal length [m]; infinite for afocal prescriptions
-  double f_number = 11.0;       ///< infinite: chief rays only; NaN: not defined by the setup or the prescription
+  double f_number = 11.0;  ///< f-number; infinite: chief rays only; NaN: not defined by the setup or the prescription
   Focus focus = Focus::target;
-  double focus_distance = 0.0;  ///< from the front principal plane, for Focus::distance [m]
+  double focus_distance = 0.0;  ///< distance from the front principal plane to the plane in focus, for Focus::distance
+                                ///< [m]
   SpotModel spot = SpotModel::gaussian;
   Transmittance transmittance = Transmittance::ideal;
   std::vector<std::string> glasses;          ///< files of additional glass catalogues (AGF), also for windows
@@ -44,7 +46,7 @@ GlassCatalogue read_glasses(LensSetup const& setup, SetupTable table);
 /// [m]; empty: unknown
 /// @param warnings         receives the lens' warnings
 void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const& glasses, double wavelength,
-                        std::optional<double> object_distance, std::vector<std::string>& warnings);
+                        std::optional<double> object_distance, Warnings& warnings);
 
 /// Image distance and magnification of a thin lens (Raffel 2015, Exp. Fluids 56:60), or of a lens that is equivalent to
 /// one in paraxial approximation.

@@ -100,9 +100,10 @@ void limit_by_own_aperture(Lens& lens, LensOptions const& options) {
   if (!stop.has_aperture) return;
   if (options.f_number && lens.paraxial_stop_radius > stop.semi_diameter) {
     lens.warnings.push_back(
-        fmt::format("{}: the aperture at the stop limits the lens to f/{:.4g}, which is used instead of "
-                    "f/{:.4g}; set lens.f_number to a larger value, or enlarge this aperture",
-                    stop.where, *options.f_number * lens.paraxial_stop_radius / stop.semi_diameter, *options.f_number));
+        {WarningCode::inconsistent, stop.where,
+         fmt::format("the aperture at the stop limits the lens to f/{:.4g}, which is used instead of f/{:.4g}; set "
+                     "lens.f_number to a larger value, or enlarge this aperture",
+                     *options.f_number * lens.paraxial_stop_radius / stop.semi_diameter, *options.f_number)});
   }
   lens.stop_radius = std::min(lens.stop_radius, stop.semi_diameter);
   lens.paraxial_stop_radius = std::min(lens.paraxial_stop_radius, stop.semi_diameter);
@@ -139,8 +140,8 @@ std::optional<double> prescribed_stop_radius(Lens lens, LensOptions options) {
 void note_wide_stop(Lens& lens, double f_number, double own_radius, double object_distance) {
   constexpr double rounding = 1e-6;
   if (lens.paraxial_stop_radius <= (1 + rounding) * own_radius) return;
-  std::string text = fmt::format("{}: f/{:.4g} opens the stop wider than the prescription itself, which is f/{:.4g}",
-                                 lens.prescription.file, f_number, f_number * lens.paraxial_stop_radius / own_radius);
+  std::string text = fmt::format("f/{:.4g} opens the stop wider than the prescription itself, which is f/{:.4g}",
+                                 f_number, f_number * lens.paraxial_stop_radius / own_radius);
   if (auto const widest = max_axial_beam_radius(lens, object_distance)) {
     RayTransfer const to_stop = ray_transfer(lens, 0, lens.stop);
     double const asked = lens.paraxial_stop_radius / std::abs(to_stop.a + to_stop.b / object_distance);
@@ -150,7 +151,7 @@ void note_wide_stop(Lens& lens, double f_number, double own_radius, double objec
   } else {
     text += "; no edge of its surfaces limits that beam, for which the lens may not be designed: give semi-diameters";
   }
-  lens.warnings.push_back(text);
+  lens.warnings.push_back({WarningCode::unsuitable, lens.prescription.file, text});
 }
 
 void open_rings(Lens& lens) {
@@ -165,10 +166,11 @@ void open_rings(Lens& lens) {
       opened.obscured = 0;
       return opened;
     });
-    lens.warnings.push_back(fmt::format(
-        "{}: this aperture admits light only beyond a radius of {:.6g} mm, which no light of the lens reaches; "
-        "it is ignored (if it should block light within the radius, give it an outer radius)",
-        prescribed.where, prescribed.obscured / unit::millimetre));
+    lens.warnings.push_back(
+        {WarningCode::ignored, prescribed.where,
+         fmt::format("this aperture admits light only beyond a radius of {:.6g} mm, which no light of the lens "
+                     "reaches; it is ignored (if it should block light within the radius, give it an outer radius)",
+                     prescribed.obscured / unit::millimetre)});
   }
 }
 

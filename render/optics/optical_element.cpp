@@ -10,7 +10,8 @@ std::vector<std::string> kind_words(ElementKinds<Kinds...>) {
 
 void append_root_tables(char const* name, char const* kind, SetupTable& root, std::vector<ElementTable>& tables) {
   for (SetupTable& table : root.tables(name)) {
-    table.mark_as_read("cameras");  // the cameras that look through it, in setups with several
+    table.mark_as_read("cameras");  // names of the cameras that look through the element, in setups with several
+                                    // cameras
     tables.push_back({table, kind});
   }
 }
@@ -112,10 +113,11 @@ double OpticalElement::image_f_number() const {
                      [](auto const& held) -> decltype(held.image_f_number()) { return held.image_f_number(); });
 }
 
-std::string OpticalElement::imaging_warning(ImagingGeometry const& imaging, double f_number) const {
-  return property_or(held_, std::string(), [&](auto const& held) -> decltype(held.imaging_warning(imaging, f_number)) {
-    return held.imaging_warning(imaging, f_number);
-  });
+std::optional<Warning> OpticalElement::imaging_warning(ImagingGeometry const& imaging, double f_number) const {
+  return property_or(held_, std::optional<Warning>(),
+                     [&](auto const& held) -> decltype(held.imaging_warning(imaging, f_number)) {
+                       return held.imaging_warning(imaging, f_number);
+                     });
 }
 
 std::string const* OpticalElement::glass() const {

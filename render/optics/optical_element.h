@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <variant>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/optics/element_kinds.h"
 #include "render/optics/lens_setup.h"
 
@@ -42,9 +44,9 @@ class OpticalElement {
   bool deflects() const;
   bool divides_light() const;
   double to_sensor() const;
-  /// f-number of the element's own images; 0 if it forms none
+  /// Returns the f-number of the images that the element forms; 0 if it forms none.
   double image_f_number() const;
-  std::string imaging_warning(ImagingGeometry const& imaging, double f_number) const;
+  std::optional<Warning> imaging_warning(ImagingGeometry const& imaging, double f_number) const;
 
   /// Name of the glass; null if the element is not made of glass.
   std::string const* glass() const;

@@ -16,8 +16,9 @@ struct Pupil {
 /// length is that in air, the reciprocal of the power.
 struct ParaxialLens {
   double effective_focal_length = 0;  ///< focal length in air [m]; infinite for afocal lenses
-  double back_focal_length = 0;       ///< from the last vertex to the rear focus [m]
-  double front_focal_length = 0;      ///< from the first vertex to the front focus, negative ahead of the vertex [m]
+  double back_focal_length = 0;       ///< distance from the last vertex to the rear focus [m]
+  double front_focal_length = 0;      ///< distance from the first vertex to the front focus, negative ahead of the
+                                      ///< vertex [m]
   double front_principal_plane = 0;   ///< distance from the first vertex [m]
   double rear_principal_plane = 0;    ///< distance from the last vertex [m]
   Pupil entrance;                     ///< entrance pupil, position from the first vertex

@@ -37,7 +37,7 @@ constexpr double longest = 1e3;  // upper limit of any length in a lens [m]
 constexpr double contact_tolerance = 1e-6;
 
 /// Returns true for an ideal lens, and for a surface that is a mirror or borders on a medium other than air. Reference
-/// planes and stops in air do not count.
+/// planes and stops in air are excluded.
 bool is_real(Prescription const& lens, std::size_t i) {
   PrescribedMedium const& before = i > 0 ? lens.surfaces[i - 1].after : lens.object_medium;
   return lens.surfaces[i].shape == PrescribedSurface::Shape::ideal_lens || !lens.surfaces[i].after.is_air() ||
@@ -68,21 +68,21 @@ bool is_turned(PrescribedSurface const& surface) {
 /// skipped. Semi-diameters for drawings are not considered as edges. An intersection off the axis causes a warning
 /// only, since it may be outside the light, and so does one within the contact tolerance.
 /// @param forwards  sign of the light's direction between the surfaces
-/// @return a warning; empty: the surfaces do not overlap
+/// @return a warning; nullopt: the surfaces do not overlap
 /// @throws DataError if they overlap on the axis
-std::string find_overlap(Prescription const& lens, std::size_t i, double forwards) {
+std::optional<Warning> find_overlap(Prescription const& lens, std::size_t i, double forwards) {
   PrescribedSurface const& one = lens.surfaces[i];
   double way = 0;
   std::size_t next_real = i + 1;
   for (; next_real < lens.surfaces.size(); ++next_real) {
-    if (is_turned(lens.surfaces[next_real])) return "";
+    if (is_turned(lens.surfaces[next_real])) return {};
     way += lens.surfaces[next_real - 1].thickness + advance(lens.surfaces[next_real]);
     if (is_real(lens, next_real)) break;
   }
-  if (next_real == lens.surfaces.size()) return "";
+  if (next_real == lens.surfaces.size()) return {};
   PrescribedSurface const& next = lens.surfaces[next_real];
   double const height = std::min(one.semi_diameter, next.semi_diameter);
-  if (!std::isfinite(height) || !one.semi_diameter_vignettes || !next.semi_diameter_vignettes) return "";
+  if (!std::isfinite(height) || !one.semi_diameter_vignettes || !next.semi_diameter_vignettes) return {};
   for (int k = 0; k <= 32; ++k) {
     double const r = height * k / 32;
     double const gap = forwards * (way + sag(next, r) - sag(one, r));
@@ -92,12 +92,12 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
                     -gap / unit::millimetre, r / unit::millimetre);
     if (gap < -contact_tolerance && k == 0)
       throw DataError(ErrorCode::invalid_value, next.where, what + " (check radius, thickness and semi-diameter)");
-    return fmt::format(
-        "{}: {}, within their semi-diameters; rays are traced from surface to surface all the same (check "
-        "radius, thickness and semi-diameter)",
-        next.where, what);
+    return Warning{WarningCode::inconsistent, next.where,
+                   fmt::format("{}, within their semi-diameters; rays are traced from surface to surface all the same "
+                               "(check radius, thickness and semi-diameter)",
+                               what)};
   }
-  return "";
+  return {};
 }
 
 /// Checks that an index, or nd and Vd, are those of a glass. @throws DataError
@@ -118,14 +118,14 @@ void check_medium(PrescribedMedium const& medium, std::string const& surface_whe
   }
 }
 
-/// Returns a warning if a surface ends inside its semi-diameter; empty otherwise.
-std::string find_short_surface(PrescribedSurface const& surface) {
+/// Returns a warning if a surface ends inside its semi-diameter.
+std::optional<Warning> find_short_surface(PrescribedSurface const& surface) {
   bool const edge = surface.semi_diameter_vignettes && std::isfinite(surface.semi_diameter);
-  if (!edge || std::isfinite(sag(surface, surface.semi_diameter))) return "";
-  return fmt::format(
-      "{}: a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm; rays beyond its rim miss it "
-      "(check radius and semi-diameter)",
-      surface.where, 1 / surface.curvature / unit::millimetre, surface.semi_diameter / unit::millimetre);
+  if (!edge || std::isfinite(sag(surface, surface.semi_diameter))) return {};
+  return Warning{WarningCode::inconsistent, surface.where,
+                 fmt::format("a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm; rays beyond "
+                             "its rim miss it (check radius and semi-diameter)",
+                             1 / surface.curvature / unit::millimetre, surface.semi_diameter / unit::millimetre)};
 }
 
 /// Checks the lengths of a surface.
@@ -158,10 +158,10 @@ void check_dimensions(PrescribedSurface const& surface, bool last) {
   }
 }
 
-/// Checks that glass behind a surface extends along the light.
+/// Checks that the thickness of glass behind a surface is directed along the light.
 /// @param forwards  sign of the light's direction behind the surface
-/// @return true if the glass is directed against the light, by no more than the tolerance of surfaces in contact
-/// @throws DataError if it is so by more
+/// @return true if the thickness is directed against the light by at most contact_tolerance
+/// @throws DataError if it is directed against the light by more
 bool check_direction(PrescribedSurface const& surface, double forwards, bool last) {
   bool const against =
       !surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last;
@@ -175,20 +175,19 @@ bool check_direction(PrescribedSurface const& surface, double forwards, bool las
 }
 
 /// Checks the aperture of a lens that has a stop.
-/// @return warning that the aperture is not defined for this object; empty: it is
+/// @return warning that the aperture is not defined for this object; nullopt: it is
 /// @throws DataError if it is not positive
-std::string check_aperture(Prescription const& lens) {
+std::optional<Warning> check_aperture(Prescription const& lens) {
   auto const& aperture = lens.aperture;
   if (aperture.kind != PrescribedAperture::Kind::stop && !(aperture.value > 0)) {
     throw DataError(ErrorCode::out_of_range, aperture.where.empty() ? lens.file : aperture.where,
                     "the aperture is not positive; correct it");
   }
-  if (aperture.kind != PrescribedAperture::Kind::object_na || std::isfinite(lens.object_distance)) return "";
+  if (aperture.kind != PrescribedAperture::Kind::object_na || std::isfinite(lens.object_distance)) return {};
   auto const at = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
-  return fmt::format(
-      "{}: a numerical aperture on the object's side does not define the aperture for an object at "
-      "infinity; the semi-diameter of the stop is used",
-      aperture.where.empty() ? at->where : aperture.where);
+  return Warning{WarningCode::assumed, aperture.where.empty() ? at->where : aperture.where,
+                 "a numerical aperture on the object's side does not define the aperture for an object at infinity; "
+                 "the semi-diameter of the stop is used"};
 }
 
 }  // namespace
@@ -218,7 +217,7 @@ Prescription read_prescription(std::string const& path) {
   for (auto const& format : formats) {
     if (extension == format.extension) {
       Prescription prescription = format.read(path);
-      std::vector<std::string> const warnings = check_prescription(prescription);
+      Warnings const warnings = check_prescription(prescription);
       prescription.warnings.insert(prescription.warnings.end(), warnings.begin(), warnings.end());
       return prescription;
     }
@@ -232,8 +231,8 @@ void assume_stop(Prescription& lens) {
   bool const named = std::any_of(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
   if (named || lens.surfaces.empty()) return;
   lens.surfaces.front().stop = true;
-  lens.warnings.push_back(lens.surfaces.front().where +
-                          ": the file names no stop (STOP, STO); the first surface is taken as the stop");
+  lens.warnings.push_back({WarningCode::assumed, lens.surfaces.front().where,
+                           "the file names no stop (STOP, STO); the first surface is taken as the stop"});
 }
 
 void assume_aperture(Prescription& lens, char const* commands) {
@@ -241,15 +240,16 @@ void assume_aperture(Prescription& lens, char const* commands) {
   bool const is_set = aperture.kind == PrescribedAperture::Kind::stop ? !aperture.where.empty() : aperture.value > 0;
   auto const stop = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
   if (is_set || stop == lens.surfaces.end()) return;
-  lens.warnings.push_back(fmt::format("{}: the file sets no aperture ({}); the semi-diameter of the stop is used",
-                                      aperture.where.empty() ? stop->where : aperture.where, commands));
+  lens.warnings.push_back(
+      {WarningCode::assumed, aperture.where.empty() ? stop->where : aperture.where,
+       fmt::format("the file sets no aperture ({}); the semi-diameter of the stop is used", commands)});
   aperture = {};
 }
 
-std::vector<std::string> check_prescription(Prescription const& lens) {
-  std::vector<std::string> warnings;
-  auto const warn = [&warnings](std::string const& text) {
-    if (!text.empty()) warnings.push_back(text);
+Warnings check_prescription(Prescription const& lens) {
+  Warnings warnings;
+  auto const warn = [&warnings](std::optional<Warning> const& warning) {
+    if (warning) warnings.push_back(*warning);
   };
   if (lens.surfaces.empty())
     throw DataError(ErrorCode::missing_content, lens.file, "has no surface; a lens needs at least one");
@@ -281,13 +281,13 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
                       "an ideal thin lens has a focal length of 0; give it another one");
     }
     check_medium(surface.after, surface.where);
-    std::string const overlap = is_real(lens, i) ? find_overlap(lens, i, forwards) : "";
+    auto const overlap = is_real(lens, i) ? find_overlap(lens, i, forwards) : std::nullopt;
     warn(overlap);
-    if (against && overlap.empty()) {
-      warn(
-          fmt::format("{}: a thickness of {:.4g} mm of glass is directed against the light; it is traced, since "
-                      "the surfaces are in contact to within {:.4g} mm",
-                      surface.where, surface.thickness / unit::millimetre, contact_tolerance / unit::millimetre));
+    if (against && !overlap) {
+      warn(Warning{WarningCode::inconsistent, surface.where,
+                   fmt::format("a thickness of {:.4g} mm of glass is directed against the light; it is traced, since "
+                               "the surfaces are in contact to within {:.4g} mm",
+                               surface.thickness / unit::millimetre, contact_tolerance / unit::millimetre)});
     }
   }
   if (!any_real)

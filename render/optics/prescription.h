@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/base/vec.h"
+#include "render/base/warning.h"
 #include "render/optics/glass.h"
 #include "render/optics/surface_outline.h"
 
@@ -41,7 +42,7 @@ struct PrescribedMedium {
 struct CoordinateBreak {
   Vec2d decentre{};         ///< [m]
   Vec3d tilt{};             ///< right-handed rotations about x, the rotated y, then the rotated z [rad]
-  bool tilt_first = false;  ///< rotations about z, y, x, then decentre; the inverse of a break with opposite signs
+  bool tilt_first = false;  ///< true: inverse order, i.e. rotations about z, y, x, then decentre
   double advance = 0;       ///< translation along the rotated z axis [m]
 };
 
@@ -55,9 +56,9 @@ struct PrescribedSurface {
   };
   /// Polynomial in r / scale added to the conic, see RadialAsphere.
   struct RadialTerms {
-    double scale = 1;  ///< [m]
+    double scale = 1;  ///< radius by which r is normalised [m]
     bool even_powers = true;
-    std::vector<double> a;  ///< [m]
+    std::vector<double> a;  ///< sag of each term at r = scale [m]
   };
   std::string where;  ///< file:line, for messages
   Shape shape = Shape::conic;
@@ -71,10 +72,10 @@ struct PrescribedSurface {
   PrescribedMedium after;
   double semi_diameter = std::numeric_limits<double>::infinity();  ///< [m]
   bool semi_diameter_vignettes = true;  ///< false: for drawings, from a design program; does not vignette
-  bool has_aperture = false;            ///< has an aperture of that semi-diameter, which limits a stop too
-  double obscured = 0;                  ///< radius of a central obscuration [m]
-  bool obscured_without_end = false;    ///< obscuration of an aperture that has an inner radius only
-  SurfaceOutline<double> outline;       ///< aperture or obscuration that is not a circle about the axis
+  bool has_aperture = false;  ///< true: the surface has an aperture of this semi-diameter, which also limits a stop
+  double obscured = 0;        ///< radius of a central obscuration [m]
+  bool obscured_without_end = false;  ///< the obscuration has no outer radius: it is the inner radius of an aperture
+  SurfaceOutline<double> outline;     ///< aperture or obscuration that is not a circle about the axis
   bool stop = false;
   std::vector<CoordinateBreak> before;  ///< coordinate breaks ahead of the surface
 };
@@ -104,20 +105,21 @@ struct Prescription {
   std::string title;
   std::string source;  ///< publication of the design
   std::vector<PrescribedSurface> surfaces;
-  double object_distance = std::numeric_limits<double>::infinity();  ///< from the object to the first surface [m]
+  double object_distance = std::numeric_limits<double>::infinity();  ///< distance from the object to the first surface
+                                                                     ///< [m]
   PrescribedMedium object_medium;                                    ///< medium ahead of the first surface
   std::vector<std::string> catalogues;  ///< glass catalogues named by the file, in its order
   PrescribedAperture aperture;
-  double primary_wavelength = 0;      ///< primary wavelength [m]; 0: not given
-  double defocus = 0;                 ///< from the paraxial image to the image, if the last thickness is 0 [m]
-  bool ends_at_image = false;         ///< the last thickness is the distance to the image, even if it is 0
-  std::vector<double> field_angles;   ///< field angles in the y-z plane, for an object at infinity [rad]
-  std::vector<std::string> warnings;  ///< features of the file that are not traced
+  double primary_wavelength = 0;     ///< primary wavelength [m]; 0: not given
+  double defocus = 0;                ///< from the paraxial image to the image, if the last thickness is 0 [m]
+  bool ends_at_image = false;        ///< the last thickness is the distance to the image, even if it is 0
+  std::vector<double> field_angles;  ///< field angles in the y-z plane, for an object at infinity [rad]
+  Warnings warnings;                 ///< features of the file that are not traced
 };
 
 /// Adds the coordinate breaks ahead of the image to a lens. A reference plane is appended with these breaks, so that
 /// the frame of the last surface is that of the image; the translation of the last break becomes the plane's thickness.
-/// Does nothing if there are no breaks.
+/// Without breaks, the lens is not changed.
 /// @param where  location of the image in the file
 void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks, std::string const& where);
 
@@ -138,6 +140,6 @@ Prescription read_prescription(std::string const& path);
 /// surfaces that overlap near their edges or do not extend to their semi-diameter.
 /// @return warnings
 /// @throws DataError
-std::vector<std::string> check_prescription(Prescription const& prescription);
+Warnings check_prescription(Prescription const& prescription);
 
 }  // namespace gladstone

@@ -8,8 +8,8 @@
 namespace gladstone {
 
 /// Plane, sphere, conic of revolution or cylinder with its vertex at the origin, as one equation: z = (c/2) (x^2 + e
-/// y^2 + (1 + k) z^2). Its sheet through the vertex is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) (Welford,
-/// Aberrations of Optical Systems, 1986, section 4.4).
+/// y^2 + (1 + k) z^2). The sheet (branch) of this surface through the vertex is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2
+/// r^2)) (Welford, Aberrations of Optical Systems, 1986, section 4.4).
 template <class T>
 struct Quadric {
   T curvature{};     ///< c, reciprocal of the radius; positive if the centre is on the +z side [1/m]

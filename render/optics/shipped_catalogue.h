@@ -19,7 +19,7 @@ class ShippedCatalogue {
     std::string key;            ///< name of the glass as a key, see glass_key()
     std::string_view name;      ///< name of the glass
     std::string_view text;      ///< lines of the glass
-    std::size_t catalogue = 0;  ///< index of its catalogue
+    std::size_t catalogue = 0;  ///< index of the catalogue of the glass
     int line = 0;               ///< number of its first line in the catalogue
   };
 
@@ -45,7 +45,8 @@ class ShippedCatalogue {
   std::vector<Catalogue> catalogues_;
   std::vector<Entry> entries_;
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Glass const>> glasses_;  ///< by entry; null until the glass is used
+  mutable std::vector<std::unique_ptr<Glass const>> glasses_;  ///< glasses by index of the entry; null until the glass
+                                                               ///< is used
 };
 
 }  // namespace gladstone

@@ -18,8 +18,8 @@ struct LambertSources {
     if (dots.shape == SourceShape::disc) return point_on_circle(sqrt(u), v);
     return {T(2) * u - T(1), T(2) * v - T(1)};
   }
-  /// Returns the point of source i at such a position [m]. Sources are symmetric about the centre: -place is as likely
-  /// as place.
+  /// Returns the point of source i at a position of place() [m]. Sources are symmetric about the centre: -place is as
+  /// likely as place.
   GLADSTONE_HD Vec3<T> point(std::uint64_t i, Vec2<T> place) const {
     return {dots.centre[i].x + dots.half_size * place.x, dots.centre[i].y + dots.half_size * place.y, dots.plane_z};
   }
@@ -40,7 +40,7 @@ struct LambertSources {
   }
 };
 
-/// Target area of one source's rays: its view of the entrance pupil, enlarged by a margin.
+/// Target area of one source's rays: the entrance pupil as seen from the source, enlarged by a margin.
 template <class T>
 struct AimedBundle {
   Vec3<T> centre, a, b;    ///< rays are sent to centre + r (a cos + b sin), 0 <= r <= 1 [m]
@@ -74,9 +74,9 @@ GLADSTONE_HD AimedRay<T> ray_to(Sources const& sources, AimedBundle<T> const& bu
 }
 
 /// Returns ray j of source i. The cos^4 law of flat targets results from the geometry and is not applied explicitly.
-///
-/// Rays of a scrambling come in pairs with the same point of the pupil and opposite positions on the source. Where the
-/// stop blocks them in one image only, the centroid then changes by the source's centre instead of a random position.
+/// Rays of a scrambling come in pairs with the same point of the pupil and opposite positions on the source. If the
+/// stop blocks a pair in one image only, the centroid then loses a contribution from the source's centre instead of one
+/// from a random position.
 template <class T, class Sources>
 GLADSTONE_HD AimedRay<T> aim_ray(Sources const& sources, AimedBundle<T> const& bundle, std::uint64_t i,
                                  std::uint64_t j) {

@@ -27,7 +27,7 @@ struct StopView {
   double radius = 0;          ///< radius of the stop [m]
   Pose<double> pose;          ///< pose of the camera
   double front = 0;           ///< position of the first surface along the camera's z [m]
-  double window_shift = 0;    ///< as ParaxialCamera::window_shift [m]
+  double window_shift = 0;    ///< apparent shift of objects, see ParaxialCamera::window_shift [m]
   RayTransfer to_stop;        ///< ray transfer from the first surface to the stop
 
   StopView() = default;
@@ -122,7 +122,8 @@ GLADSTONE_HD inline Ray<double> ray_to_aim(CameraView<double> const& camera, Vec
 GLADSTONE_HD inline AimMap paraxial_aim(StopView const& view, Vec3d point) {
   Vec3d const q = view.pose.point_to_local(point);
   double const distance = view.front - q.z - view.window_shift;
-  double const per_slope = view.to_stop.a * distance + view.to_stop.b;  // in the stop, over a ray's slope [m]
+  double const per_slope = view.to_stop.a * distance + view.to_stop.b;  // position in the stop per unit slope of a ray
+                                                                        // [m]
   double const height = view.to_stop.b / per_slope, radius = view.radius * distance / per_slope;
   AimMap map;
   map.centre = {height * q.x, height * q.y};
@@ -143,7 +144,7 @@ template <class Medium>
 GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                               Vec3d point, AimMap& map) {
   constexpr int most_turns = 16;
-  constexpr double settled = 1e-7;  // relative to the pupil radius; the final residual is far smaller
+  constexpr double settled = 1e-7;  // tolerance relative to the pupil radius; the final residual is far smaller
   Vec2d aim[rim_rays], miss[rim_rays];
   for (int k = 0; k < rim_rays; ++k) aim[k] = map.at(point_on_circle(1.0, static_cast<double>(k) / rim_rays));
   double change = 1;

@@ -14,8 +14,8 @@ class HitGrid {
  public:
   explicit HitGrid(GaussianSpot<double> const& spot);
 
-  /// Returns true if this method is faster for the given number of rays and the PSF is wide enough for a grid of
-  /// moderate size.
+  /// Returns true if the grid is faster than individual PSFs for the given number of rays and the PSF is wide enough
+  /// for a grid of moderate size.
   static bool is_faster_than_psfs(double sigma, std::uint64_t rays);
 
   /// Adds the light of a ray at p [px]. A tile that occupies the slot of the required one is first added to the image.
@@ -39,7 +39,7 @@ class HitGrid {
   HitSpline spline_;
   HitSplineView view_;
   int side_;           ///< nodes along a tile's side
-  bool empty_ = true;  ///< no light has been added
+  bool empty_ = true;  ///< true: no light has been added
   Vec2<int> first_{};  ///< pixel of tile (0, 0), which is centred on the first ray
   Tile tiles_[slots * slots];
   std::vector<double> rows_seen_;

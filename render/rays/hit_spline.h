@@ -44,7 +44,7 @@ struct HitSplineView {
 
   GLADSTONE_HD int reach() const { return reach_px * per_px; }
   GLADSTONE_HD int count() const { return 2 * reach() + 1; }
-  /// Returns the first pixel that a range of nodes illuminates, and below, the number of pixels.
+  /// Returns the first pixel that a range of nodes illuminates; pixels() is the number of illuminated pixels.
   /// @pre nodes.low >= 0
   GLADSTONE_HD int first_pixel(NodeRange nodes) const { return nodes.low / per_px - reach_px; }
   GLADSTONE_HD int pixels(NodeRange nodes) const {

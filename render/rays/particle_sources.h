@@ -25,7 +25,7 @@ struct ParticleSources {
   GLADSTONE_HD T intensity(std::uint64_t i, Vec3<T> direction) const {
     return photons[i] * scattering.cross_section(i, direction, sheet.wave(at[i], pulse));
   }
-  /// Key of the particle's random numbers, if these are its positions at the first pulse.
+  /// Key of the particle's random numbers. @pre the positions are those at the first pulse
   GLADSTONE_HD std::uint64_t key(std::uint64_t i) const {
     return random_bits(random_key({at[i].x, at[i].y}), RandomStream::pupil, random_key({at[i].z, T(0)}), 0);
   }

@@ -18,11 +18,11 @@ struct ParticleLaunches {
   RaysLadder ladder;
 
   /// @param spot  point spread function; a default SpotView if no images are rendered
-  ParticleLaunches(Scene const& scene, SpotView const& spot, RenderImages images)
-      : sharp(scene, spot, StopRim::sharp),
-        ladder(RaysLadder::of_rules(scene, RaysLaunch(scene, spot, StopRim::smooth), images)) {}
+  ParticleLaunches(Scene const& scene, RenderPlan const& plan, SpotView const& spot, RenderImages images)
+      : sharp(scene, plan, spot, StopRim::sharp),
+        ladder(RaysLadder::of_rules(scene, plan, RaysLaunch(scene, plan, spot, StopRim::smooth), images)) {}
 
-  /// Returns the first step of the ladder for a particle whose rays fill the stop.
+  /// Returns the first step in the sequence of ray numbers (RaysLadder) for a particle whose rays fill the stop.
   /// @param light  light of the particle's image
   /// @param spread2  as FilledStop::spread2 [px^2]
   std::size_t step_filled(double light, double spread2) const {
@@ -31,9 +31,10 @@ struct ParticleLaunches {
     return ladder.at_least(
         estimate_rays_for_spread(ladder.goal(), sent, light, spread2, static_cast<double>(least.rays)));
   }
-  /// Returns the first step of the ladder for a particle whose rays are vignetted at the stop.
+  /// Returns the first step in the sequence of ray numbers for a particle whose rays are vignetted at the stop.
   std::size_t step_clipped() const { return ladder.at_least(least_clipped); }
-  static constexpr double least_clipped = 32;  ///< minimum number of rays; with fewer, the smoothed edge is too wide
+  static constexpr double least_clipped = 32;  ///< minimum number of rays that are vignetted at the stop; with fewer,
+                                               ///< the smoothed zone at the edge of the stop is too wide
 };
 
 /// Traces the rays of particles, one particle at a time, with the medium in both frames and a particle position and
@@ -63,8 +64,8 @@ class ParticleTracer {
   /// Traces a particle with an adaptive number of rays.
   /// @param images  image of each frame; null: light is not deposited
   /// @param light_per_photon  light of an image per photon
-  /// @param least  minimum step of the ladder
-  /// @return its truth; NaN at a pulse that does not illuminate it or if no ray passes
+  /// @param least  minimum step in the sequence of ray numbers
+  /// @return truth of the particle; NaN at a pulse that does not illuminate it or if no ray passes
   TracedParticleTruth trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_photon,
                             std::size_t least = 0) {
     key_ = pulses_[0].key(particle);
@@ -92,7 +93,8 @@ class ParticleTracer {
     return {source_truth(seen_, scramblings, origin_), source_truth(ambient_, scramblings, origin_)};
   }
 
-  /// Step of the ladder that the last particle used, and its number of rays.
+  /// Returns the step in the sequence of ray numbers (RaysLadder) at which the last particle was traced; rays() is its
+  /// number of rays.
   std::size_t step() const { return static_cast<std::size_t>(launch_ - &launches_.ladder[0]); }
   std::uint64_t rays() const { return launch_->rays; }
   StatusCounts const& statuses() const { return statuses_; }
@@ -119,7 +121,7 @@ class ParticleTracer {
   double light_per_weight() const { return light_per_photon_ / static_cast<double>(launch_->rays); }
 
   /// Aims at both pulses.
-  /// @return the first step of the ladder
+  /// @return the first step in the sequence of ray numbers
   std::size_t aim(std::uint64_t particle) {
     bool placed = false;  // whether the origin is set, by the first pulse that illuminates the particle
     std::size_t step = 0;

@@ -56,13 +56,13 @@ bool reaches(Camera const& camera, Vec3d place, double margin_px) {
 
 }  // namespace
 
-std::vector<char> particles_near_view(Scene const& scene, Particles const& particles) {
+std::vector<char> particles_near_view(Scene const& scene, RenderPlan const& plan, Particles const& particles) {
   std::vector<char> near(particles.size(), 1);
   if (scene.setup.divides_light()) return near;
   std::optional<AiryTable> airy;
   double const px_per_metre = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
   double const margin_px = scene.setup.view_margin_px + make_spot(scene, airy).half_width() + spare_px +
-                           image_shift_per_lens_shift(scene, particles) * scene.pupil_margin * px_per_metre;
+                           image_shift_per_lens_shift(scene, particles) * plan.pupil_margin * px_per_metre;
   parallel_chunks(particles.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       bool found = false;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "render/light/particles.h"
-#include "render/scene/scene.h"
+#include "render/scene/render_plan.h"
 
 namespace gladstone {
 
@@ -13,13 +13,13 @@ namespace gladstone {
 /// - the first interrogation window, for which the truth may be requested (Setup::view_margin_px),
 /// - its circle of confusion, from rays to the edge of the stop without medium, times 1.5, and the half width of the
 ///   PSF,
-/// - the displacement by the medium: the largest deflection of the probe rays on the lens plane (Scene::pupil_margin),
+/// - the displacement by the medium: the largest deflection of the probe rays on the lens plane
+/// (RenderPlan::pupil_margin),
 ///   times twice the ratio of the longest distance from the medium back to a particle to the shortest distance on to
 ///   the lens, at most 2. A deflection by an angle shifts the image in proportion to the former distance and the ray at
 ///   the lens in proportion to the latter,
 /// - 8 px.
 /// If an optical element divides the light cones (lenslets), all particles are included.
-/// @param scene  planned: step and pupil margin are known
-std::vector<char> particles_near_view(Scene const& scene, Particles const& particles);
+std::vector<char> particles_near_view(Scene const& scene, RenderPlan const& plan, Particles const& particles);
 
 }  // namespace gladstone

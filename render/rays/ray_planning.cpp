@@ -36,7 +36,7 @@ struct Probe {
   double largest_shift() const { return shift.empty() ? 0.0 : *std::max_element(shift.begin(), shift.end()); }
 };
 
-/// Traces rays of some dots with given steps [m]. What does not depend on the step is computed once.
+/// Traces rays of some dots with given steps [m]. Quantities that do not depend on the step are computed once.
 /// @return one probe per step
 template <std::size_t Count>
 std::array<Probe, Count> probe_dots(Scene const& scene, std::vector<std::size_t> const& dots,
@@ -149,8 +149,7 @@ IntegrationStep determine_step_by_tracing(Scene const& scene) {
   }
 }
 
-AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene) {
-  constexpr std::uint64_t rays = 64;  // accuracy of a few percent for the brightest pixel and thus for a grey level
+AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene, RenderPlan const& plan) {
   CameraSetup const& camera = scene.setup.camera;
   double const full_scale = std::exp2(error_bit_depth(camera)) - 1;
   AdaptiveRayCriteria criteria;
@@ -161,30 +160,29 @@ AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene) {
     criteria.level = light_per_level(camera, electrons);
     return criteria;
   }
-  Scene metered = scene;
+  RenderPlan metered = plan;
   metered.adaptive_criteria.reset();
-  metered.rays_per_dot = rays;
-  criteria.level = brightest_pixel(render_sample(std::move(metered))) / criteria.brightest_at;
+  metered.rays = 64;  // accuracy of a few percent for the brightest pixel and thus for a grey level
+  criteria.level = brightest_pixel(render_sample(scene, metered)) / criteria.brightest_at;
   return criteria;
 }
 
-RayBudget determine_ray_budget_by_tracing(Scene const& scene) {
-  RayBudget budget;
+RenderPlan plan_rays_by_tracing(Scene const& scene, RenderPlan plan) {
   if (auto const given = scene.setup.render.rays_per_dot) {
-    budget.rays = *given;
-    return budget;
+    plan.rays = *given;
+    return plan;
   }
   bool const one_path = scene.chief_rays_only() && scene.dots.half_size == 0;
-  budget.rays = one_path ? 1 : max_rays_per_source(scene);
-  budget.adaptive_criteria = determine_adaptive_criteria(scene);
-  return budget;
+  plan.rays = one_path ? 1 : max_rays_per_source(scene, plan);
+  plan.adaptive_criteria = determine_adaptive_criteria(scene, plan);
+  return plan;
 }
 
-std::uint64_t largest_ray_number(Scene const& scene) {
-  if (scene.setup.experiment().sources.on_target) return scene.rays_per_dot;
+std::uint64_t largest_ray_number(Scene const& scene, RenderPlan const& plan) {
+  if (scene.setup.experiment().sources.on_target) return plan.rays;
   std::optional<AiryTable> airy;
   return static_cast<std::uint64_t>(
-      ParticleLaunches(scene, make_spot(scene, airy), RenderImages::yes).ladder.goal().most);
+      ParticleLaunches(scene, plan, make_spot(scene, airy), RenderImages::yes).ladder.goal().most);
 }
 
 }  // namespace gladstone

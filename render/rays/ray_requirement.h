@@ -11,8 +11,8 @@ namespace gladstone {
 
 /// Placement of a source's rays. Determines how fast their errors decrease with the number of rays.
 enum class RayPlacement {
-  by_rule,  ///< at the nodes of a cubature rule that fill the stop (stop_rule.h)
-  clipped,  ///< at the points of a sequence over a disc larger than the stop
+  by_rule,  ///< rays at the nodes of a cubature rule that fill the stop (stop_rule.h)
+  clipped,  ///< rays at the points of a sequence over a disc larger than the stop
 };
 
 /// Required accuracy of a source's light and truth.
@@ -51,9 +51,9 @@ GLADSTONE_HD inline bool cubature_rule_suffices(double n, double ratio2, double 
   return sqrt(n) * log(ratio2 / (5 + 0.085 * n)) <= log(allowed);
 }
 
-/// Estimates the image error of n rays at scrambled points, as in cubature_rule_suffices(): for few rays the error of
-/// their variance, for many that of the number of rays within the PSF's area. Empirical, for discs of 0.1 to 24 times
-/// the PSF's radius, dots of 0 to 6 px and 32 to 16,384 rays: correct within a factor of 3.
+/// Estimates the image error of n rays at scrambled points, as in cubature_rule_suffices(): if few rays are within the
+/// PSF's area, the error of their variance; if many are, the error of their number. Empirical, for discs of 0.1 to 24
+/// times the PSF's radius, dots of 0 to 6 px and 32 to 16,384 rays: correct within a factor of 3.
 GLADSTONE_HD inline double estimate_point_sampling_error(double n, double ratio2) {
   using std::pow;
   double const within = n / (1 + ratio2 / 4);
@@ -78,7 +78,8 @@ GLADSTONE_HD inline double estimate_rays_for_spread(RequiredRayAccuracy const& g
 
 /// Properties of a source's rays known before they are traced, for each image.
 struct EdgeRaySpread {
-  double spread2[frame_count] = {};          ///< as FilledStop::spread2, for rays placed by a rule [px^2]
+  double spread2[frame_count] = {};          ///< variance of the hits, see FilledStop::spread2, for rays placed by a
+                                             ///< rule [px^2]
   bool clipped[frame_count] = {true, true};  ///< rays are sent to a disc larger than the stop and may all be vignetted
 };
 
@@ -87,7 +88,7 @@ struct EdgeRaySpread {
 /// For cubature rules, the next larger rule is requested, since their errors vanish abruptly with n; the variance of
 /// points is assumed to decrease as 1/n.
 ///
-/// Rotating a rule of one or two rings does not reveal its error from rotationally symmetric aberrations. This is
+/// Rotating a rule of one or two rings does not reveal its error from rotationally symmetric aberrations. This error is
 /// estimated from the difference between the measured spread and that of the edge rays, which is as large as the error
 /// of one ring and more than four times that of two (double Gauss and achromat, f/4 to f/11); the error of four rings
 /// is negligible.
@@ -107,7 +108,7 @@ GLADSTONE_HD inline double estimate_required_rays(RequiredRayAccuracy const& goa
   for (int i = 0; i < scramblings; ++i) {
     all += of[i];
     for (int frame = 0; frame < frame_count; ++frame) {
-      // If no ray passes, the source may still not be dark.
+      // Even if no ray passes, the source may be visible.
       if (rim.clipped[frame] && !(of[i].hits[frame].weight > 0)) ask(4 * rays);
     }
   }

@@ -7,7 +7,7 @@ namespace gladstone {
 RayTheory::RayTheory(Scene const& scene, RaysLaunch const& launch, SourceShape shape, bool extended, int most_rings)
     : plane_(scene.target_plane()),
       axis_(scene.camera.pose.z),
-      step_(std::min(scene.step, scene.medium.coarsest_step)),
+      step_(std::min(launch.tracing.step, scene.medium.coarsest_step)),
       n0_(scene.setup.ambient_index()),
       places_(!extended ? SourceCubature{{{0, 0}}, {1.0}}
                         : (shape == SourceShape::disc ? SourceCubature::radon() : SourceCubature::square(3))),
@@ -41,17 +41,17 @@ Vec2d RayTheory::shift(ImagedPoint const& seen, Ray<double> const& ray, Vec3d le
   return seen.moved({moved.x, moved.y});
 }
 
-double theory_seconds(Scene const& scene) {
+double theory_seconds(Scene const& scene, RenderPlan const& plan) {
   constexpr double a_trace = 0.2e-6;  // aiming a ray and tracing it through the optics [s]
-  RaysLaunch const launch(scene, SpotView{});
+  RaysLaunch const launch(scene, plan, SpotView{});
   RayTheory const theory(scene, launch, scene.dots.shape, scene.dots.half_size > 0);
   double const rays = static_cast<double>(scene.dots.centre.size()) * static_cast<double>(theory.rays());
-  return rays * (a_trace + theory_ray_seconds(scene));
+  return rays * (a_trace + theory_ray_seconds(scene, plan));
 }
 
-FieldMap map_field_by_rays(Scene const& scene, int spacing_px) {
+FieldMap map_field_by_rays(Scene const& scene, RenderPlan const& plan, int spacing_px) {
   FieldMap map = FieldMap::ambient(scene.setup, spacing_px);
-  RaysLaunch const launch(scene, SpotView{});
+  RaysLaunch const launch(scene, plan, SpotView{});
   RayTheory const theory(scene, launch, SourceShape::disc, false);
   CameraView<double> const camera = scene.camera.view();
   std::visit(
@@ -76,11 +76,11 @@ FieldMap map_field_by_rays(Scene const& scene, int spacing_px) {
   return map;
 }
 
-StrainMap map_strain_by_rays(Scene const& scene) {
+StrainMap map_strain_by_rays(Scene const& scene, RenderPlan const& plan) {
   CameraSetup const& setup = scene.setup.camera;
   int const spacing_px = std::max(4, std::max(setup.columns, setup.rows) / 64);
   int const columns = std::max(3, setup.columns / spacing_px), rows = std::max(3, setup.rows / spacing_px);
-  RaysLaunch const launch(scene, SpotView{});
+  RaysLaunch const launch(scene, plan, SpotView{});
   RayTheory const theory(scene, launch, SourceShape::disc, false, 3);
   Image<Vec2d> displacement(columns, rows);
   std::visit(

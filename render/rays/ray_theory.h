@@ -9,8 +9,8 @@ namespace gladstone {
 
 /// Integrals along a straight ray of the components of grad n perpendicular to the camera's axis.
 struct TransverseGradientIntegral {
-  Vec3d plain{};                       ///< [1]
-  Vec3d lever_weighted{};              ///< grad n times the axial distance from the ray's start [m]
+  Vec3d plain{};                       ///< integral of grad n [1]
+  Vec3d lever_weighted{};              ///< integral of grad n times the axial distance from the ray's start [m]
   double refractivity = 0, depth = 0;  ///< integrals of n - 1 and of 1 over the distance along the axis [m]
 };
 
@@ -20,7 +20,7 @@ struct TransverseGradientIntegral {
 class RayTheory {
  public:
   static constexpr int all_rings = 40;
-  /// @param launch  determines how rays are aimed
+  /// @param launch  determines the integration step and how rays are aimed
   /// @param shape  shape of extended sources
   /// @param extended  false: point sources
   /// @param most_rings  maximum number of rings of the rule over the stop; fewer give an approximate average
@@ -67,7 +67,7 @@ class RayTheory {
     if (weight > 0) truth.eq9_cone_px[source] = sum / weight;
   }
 
-  /// Returns the ray in front of the medium, extended back to the dots' plane as it appears through elements ahead;
+  /// Returns the ray as it enters the medium, extended backwards in a straight line to the apparent plane of the dots;
   /// nullopt if the ray does not reach the medium.
   std::optional<Ray<double>> before_medium(CameraView<double> const& camera, Ray<double> ray) const;
 
@@ -94,7 +94,7 @@ class RayTheory {
   double lever(Ray<double> const& start) const {
     return -start.position.z / start.direction.z * dot(start.direction, axis_);
   }
-  /// Returns the displacement of the pixel for an integral with levers [px].
+  /// Returns the displacement in the image for a lever-weighted integral of the gradient [px].
   Vec2d shift(ImagedPoint const& seen, Ray<double> const& ray, Vec3d lever_weighted) const;
 
  private:
@@ -107,10 +107,10 @@ class RayTheory {
 };
 
 /// Estimates the processor time of small-angle theory for a scene's dots [s], with theory_ray_seconds() per ray.
-double theory_seconds(Scene const& scene);
+double theory_seconds(Scene const& scene, RenderPlan const& plan);
 
 /// map_field() and map_strain() (field_map.h) for any camera. The aperture average uses a few rays only.
-FieldMap map_field_by_rays(Scene const& scene, int spacing_px);
-StrainMap map_strain_by_rays(Scene const& scene);
+FieldMap map_field_by_rays(Scene const& scene, RenderPlan const& plan, int spacing_px);
+StrainMap map_strain_by_rays(Scene const& scene, RenderPlan const& plan);
 
 }  // namespace gladstone

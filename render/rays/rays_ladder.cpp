@@ -26,32 +26,34 @@ double smooth_spot2(Scene const& scene) {
 
 }  // namespace
 
-RaysLadder::RaysLadder(Scene const& scene, RenderImages images) {
-  if (scene.adaptive_criteria && images != RenderImages::no) goal_.level = scene.adaptive_criteria->level;
-  if (scene.adaptive_criteria) goal_.brightest_at = scene.adaptive_criteria->brightest_at;
+RaysLadder::RaysLadder(Scene const& scene, RenderPlan const& plan, RenderImages images) {
+  if (plan.adaptive_criteria && images != RenderImages::no) goal_.level = plan.adaptive_criteria->level;
+  if (plan.adaptive_criteria) goal_.brightest_at = plan.adaptive_criteria->brightest_at;
   goal_.spot2 = smooth_spot2(scene);
 }
 
-RaysLadder RaysLadder::of_points(Scene const& scene, RaysLaunch const& shared, RenderImages images) {
+RaysLadder RaysLadder::of_points(Scene const& scene, RenderPlan const& plan, RaysLaunch const& shared,
+                                 RenderImages images) {
   constexpr std::uint64_t least = 32;
-  RaysLadder ladder(scene, images);
-  for (std::uint64_t rays = least; scene.adaptive_criteria && rays < scene.rays_per_dot; rays *= 2) {
+  RaysLadder ladder(scene, plan, images);
+  for (std::uint64_t rays = least; plan.adaptive_criteria && rays < plan.rays; rays *= 2) {
     ladder.launches_.push_back(shared.with_rays(rays));
   }
-  ladder.launches_.push_back(shared.with_rays(scene.rays_per_dot));
-  ladder.goal_.most = static_cast<double>(scene.rays_per_dot);
+  ladder.launches_.push_back(shared.with_rays(plan.rays));
+  ladder.goal_.most = static_cast<double>(plan.rays);
   return ladder;
 }
 
-RaysLadder RaysLadder::of_rules(Scene const& scene, RaysLaunch const& shared, RenderImages images) {
+RaysLadder RaysLadder::of_rules(Scene const& scene, RenderPlan const& plan, RaysLaunch const& shared,
+                                RenderImages images) {
   Setup const& setup = scene.setup;
   std::uint64_t const least = aberrates(setup) ? 64 : 4;
   bool const smooth = !setup.divides_light() && (images == RenderImages::no || shared.spot.model != SpotModel::none);
   bool const ruled =
-      scene.adaptive_criteria && smooth && shared.choice.sampling == PupilSampling::sobol && !scene.chief_rays_only();
-  if (!ruled || scene.rays_per_dot < least) return of_points(scene, shared, images);
-  RaysLadder ladder(scene, images);
-  for (std::uint64_t rays = least; rays <= scene.rays_per_dot; rays *= 4) {
+      plan.adaptive_criteria && smooth && shared.choice.sampling == PupilSampling::sobol && !scene.chief_rays_only();
+  if (!ruled || plan.rays < least) return of_points(scene, plan, shared, images);
+  RaysLadder ladder(scene, plan, images);
+  for (std::uint64_t rays = least; rays <= plan.rays; rays *= 4) {
     RaysLaunch& launch = ladder.launches_.emplace_back(shared.with_rays(rays));
     launch.rule = StopRule(rays);
     launch.choice.scrambling_bits = rays < 64 ? 1 : 2;

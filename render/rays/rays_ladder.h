@@ -14,12 +14,13 @@ class RaysLadder {
  public:
   /// Returns a ladder of Sobol or random points: 32 rays, doubled at each step.
   /// @param shared  launch whose parameters, except the number of rays, apply to all steps
-  static RaysLadder of_points(Scene const& scene, RaysLaunch const& shared, RenderImages images);
+  static RaysLadder of_points(Scene const& scene, RenderPlan const& plan, RaysLaunch const& shared,
+                              RenderImages images);
   /// Returns a ladder of cubature rules that fill the stop, with four times as many nodes at each step: from 4 on, or
   /// from 64 with a prescription or refracting elements. Returns a ladder of points where no rule is suitable: with
   /// elements that divide the light cone, for images without a PSF, for random sampling, and for non-adaptive ray
   /// numbers.
-  static RaysLadder of_rules(Scene const& scene, RaysLaunch const& shared, RenderImages images);
+  static RaysLadder of_rules(Scene const& scene, RenderPlan const& plan, RaysLaunch const& shared, RenderImages images);
 
   std::size_t size() const { return launches_.size(); }
   RaysLaunch const& operator[](std::size_t step) const { return launches_[step]; }
@@ -37,7 +38,7 @@ class RaysLadder {
   }
 
  private:
-  RaysLadder(Scene const& scene, RenderImages images);
+  RaysLadder(Scene const& scene, RenderPlan const& plan, RenderImages images);
   std::vector<RaysLaunch> launches_;
   RequiredRayAccuracy goal_;
 };

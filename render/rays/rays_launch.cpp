@@ -48,17 +48,19 @@ std::optional<AimShift> difference_shift(Camera const& camera, WorldApparentPupi
 
 }  // namespace
 
-RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim, RayOrder order)
+RaysLaunch::RaysLaunch(Scene const& scene, RenderPlan const& plan, SpotView const& shown, StopRim rim, RayOrder order)
     : camera(scene.camera),
-      tracing{scene.step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
+      tracing{plan.step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
               scene.setup.medium.faces},
       spot(shown),
       z_b(scene.setup.z_b()),
       ordered(order == RayOrder::neighbours && scene.medium.grid.nodes[0] > 1) {
   choice.seed = scene.setup.render.seed;
   choice.sampling = scene.setup.render.sampling;
-  set_rays(scene.rays_per_dot);
-  if (rim == StopRim::smooth && !camera.chief_rays_only()) camera.smooth_stop(scene.stop_edge());
+  set_rays(plan.rays);
+  if (rim == StopRim::smooth && !camera.chief_rays_only()) {
+    camera.smooth_stop(Scene::stop_edge(static_cast<double>(rays)));
+  }
   // Light of a pixel on the axis: the area that it sees times the cosine and the solid angle of its light cone.
   auto const seen = camera.unproject(camera.sensor.axis_pixel(), scene.target_plane());
   if (!seen)

@@ -5,12 +5,12 @@
 #include "render/rays/aimed_sources.h"
 #include "render/rays/stop_rule.h"
 #include "render/scene/camera.h"
-#include "render/scene/scene.h"
+#include "render/scene/render_plan.h"
 #include "render/scene/spot.h"
 
 namespace gladstone {
 
-/// Edge of the stop in a launch.
+/// Treatment of the aperture stop's edge in a RaysLaunch.
 enum class StopRim {
   smooth,  ///< smoothed over a width that depends on the number of rays, for rays that are vignetted there
   sharp,   ///< sharp, for rays that fill the stop exactly
@@ -42,7 +42,7 @@ struct RaysLaunch {
   StopRule rule;          ///< rule for rays that fill the stop; without rings: points by `choice`
   bool ordered = false;   ///< points are in the order of ordered_point()
 
-  RaysLaunch(Scene const& scene, SpotView const& spot, StopRim rim = StopRim::smooth,
+  RaysLaunch(Scene const& scene, RenderPlan const& plan, SpotView const& spot, StopRim rim = StopRim::smooth,
              RayOrder order = RayOrder::sequence);
   /// Returns the same launch with another number of rays.
   RaysLaunch with_rays(std::uint64_t number) const;
@@ -68,7 +68,7 @@ struct RaysLaunch {
   /// Returns the margin for a source before its rays are traced: twice the largest deflection of its chief and edge
   /// rays plus 1 % of the entrance pupil's radius, or 0 if these are not deflected. Other rays may be deflected more:
   /// through a smooth volume up to 1.6, through a turbulent plane up to 5 times as much. A source whose margin is too
-  /// small is traced again, which costs more than the 2 % of rays that 1 % of the radius takes.
+  /// small is traced again, which costs more than the 2 % of rays added by 1 % of the radius.
   /// @param shift  largest deflection of these rays on the aim plane [m]
   double first_margin(WorldApparentPupil const& disc, double shift) const;
   /// Returns the margin for a source of which a ray was deflected by `shift` on the aim plane [m].

@@ -16,13 +16,13 @@ namespace gladstone {
 namespace {
 
 template <class Medium>
-Rendering trace_all(Scene const& scene, DotPattern const& sources, Medium const& medium, SpotView const* spot,
-                    RenderTheory theory) {
-  RaysLaunch const launch(scene, spot ? *spot : SpotView{});
+Rendering trace_all(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, Medium const& medium,
+                    SpotView const* spot, RenderTheory theory) {
+  RaysLaunch const launch(scene, plan, spot ? *spot : SpotView{});
   LambertSources<double> const lambert{sources.view(-scene.setup.z_d)};
-  RaysLadder const ladder = RaysLadder::of_points(scene, launch, spot ? RenderImages::yes : RenderImages::no);
+  RaysLadder const ladder = RaysLadder::of_points(scene, plan, launch, spot ? RenderImages::yes : RenderImages::no);
   std::size_t const count = sources.centre.size();
-  TracingPass pass(scene, sources);
+  TracingPass pass(scene, plan, sources);
   std::optional<LightImage> images[frame_count];
   LightImage* targets[frame_count] = {};
   for (int frame = 0; spot && frame < frame_count; ++frame) {
@@ -85,13 +85,13 @@ void take_from_white(Scene const& scene, FramePair<double>& light) {
 
 }  // namespace
 
-Rendering RaysRenderer::render(Scene const& scene, DotPattern const& sources, RenderImages images,
-                               RenderTheory theory) {
+Rendering RaysRenderer::render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources,
+                               RenderImages images, RenderTheory theory) {
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
   Rendering rendering = std::visit(
       [&](auto const& medium) {
-        return trace_all(scene, sources, medium, images == RenderImages::no ? nullptr : &spot, theory);
+        return trace_all(scene, plan, sources, medium, images == RenderImages::no ? nullptr : &spot, theory);
       },
       scene.medium.view);
   rendering.table = TableState::by_rays;
@@ -102,14 +102,14 @@ Rendering RaysRenderer::render(Scene const& scene, DotPattern const& sources, Re
   return rendering;
 }
 
-Rendering RaysRenderer::render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
-                                         RenderImages images) {
-  return trace_particles(scene, particles, light, images);
+Rendering RaysRenderer::render_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                                         ParticleLight light, RenderImages images) {
+  return trace_particles(scene, plan, particles, light, images);
 }
 
-std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sources) {
-  RaysLaunch const launch(scene, SpotView{});
-  RaysLadder const ladder = RaysLadder::of_points(scene, launch, RenderImages::no);
+std::vector<Vec2d> ideal_displacements(Scene const& scene, RenderPlan const& plan, DotPattern const& sources) {
+  RaysLaunch const launch(scene, plan, SpotView{});
+  RaysLadder const ladder = RaysLadder::of_points(scene, plan, launch, RenderImages::no);
   LambertSources<double> const lambert{sources.view(-scene.setup.z_d)};
   IdealView const view{launch.camera.view(), &launch.camera, -scene.setup.z_d,
                        -scene.setup.z_d + scene.setup.element_shift(ElementSide::target)};
@@ -129,10 +129,10 @@ std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sou
 }
 
 Image<double> render_white_target(Scene const& scene) {
-  constexpr int nodes = 17, rays = 4096;
-  Scene many = scene;
-  many.rays_per_dot = rays;
-  RaysLaunch const launch(many, SpotView{});
+  constexpr int nodes = 17;
+  RenderPlan plan;
+  plan.rays = 4096;
+  RaysLaunch const launch(scene, plan, SpotView{});
   CameraView<double> const camera = launch.camera.view();
   Vec2d const centre{};
   LambertSources<double> const paper{{&centre, nullptr, 1, -scene.setup.z_d, 0, SourceShape::disc}};

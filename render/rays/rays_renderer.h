@@ -10,16 +10,17 @@ namespace gladstone {
 class RaysRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
-  Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
-  Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
-                             RenderImages images) override;
+  Rendering render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, RenderImages images,
+                   RenderTheory theory) override;
+  Rendering render_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                             ParticleLight light, RenderImages images) override;
 };
 
 /// Computes the displacements that an ideal lens in place of the actual one would produce [px].
 /// Every ray of the actual camera that passes its stop is included, in both images, but is assigned the collinear image
 /// (Camera::ideal_project) of the apparent point of origin on the target. The difference from the actual displacement
 /// is the effect of aberrations, including defocus. NaN if no ray passes.
-std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sources);
+std::vector<Vec2d> ideal_displacements(Scene const& scene, RenderPlan const& plan, DotPattern const& sources);
 
 /// Renders a white target: light per pixel, from which dark dots are subtracted.
 Image<double> render_white_target(Scene const& scene);

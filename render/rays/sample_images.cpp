@@ -23,10 +23,10 @@ constexpr std::size_t sample_sources = 96;
 
 /// Renders some particles of a PIV scene.
 /// @return whether the next finer rule was used
-bool render_particles(Scene const& scene, std::vector<std::size_t> const& some, SampleRays rays,
+bool render_particles(Scene const& scene, RenderPlan const& plan, std::vector<std::size_t> const& some, SampleRays rays,
                       FramePair<double>& light) {
   std::optional<AiryTable> airy;
-  ParticleLaunches const launches(scene, make_spot(scene, airy), RenderImages::yes);
+  ParticleLaunches const launches(scene, plan, make_spot(scene, airy), RenderImages::yes);
   bool const next_rule = rays == SampleRays::next_rule && launches.ladder[0].rule.view();
   int const columns = scene.setup.camera.columns, rows = scene.setup.camera.rows;
   LightImage reference(columns, rows), flow(columns, rows);
@@ -46,10 +46,11 @@ bool render_particles(Scene const& scene, std::vector<std::size_t> const& some, 
   return next_rule;
 }
 
-/// Returns the mean squared difference of two images of a sample over the lit pixels of the image of all sources.
-/// With a pixels of the sample lit among A, the sample leaves a pixel dark with probability 1 - a / A, and n times as
-/// many sources at random places with (1 - a / A)^n: their image has A (1 - (1 - a / A)^n) lit pixels, and the squares
-/// add up.
+/// Estimates the mean squared difference of two images of all sources over their lit pixels, from images of a sample.
+/// If the sample lights a of A pixels, a pixel is dark with probability 1 - a / A. With n times as many sources at
+/// random positions, this probability is (1 - a / A)^n, so that A (1 - (1 - a / A)^n) pixels are lit. The sum of the
+/// squared differences is n times that of the sample.
+/// @param share  n
 double mean_square(Image<double> const& one, Image<double> const& other, double level, double share) {
   double square = 0, lit = 0;
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -64,18 +65,18 @@ double mean_square(Image<double> const& one, Image<double> const& other, double 
 
 }  // namespace
 
-SampleImages render_sample(Scene scene, SampleRays rays) {
+SampleImages render_sample(Scene scene, RenderPlan const& plan, SampleRays rays) {
   std::vector<std::size_t> const in_view = sources_in_view(scene), some = choose_sample(in_view, sample_sources);
   SampleImages sample;
   if (some.empty()) return {{Image<double>(1, 1), Image<double>(1, 1)}};
   sample.share = static_cast<double>(in_view.size()) / static_cast<double>(some.size());
   if (!scene.setup.experiment().sources.on_target) {
-    sample.next_rule = render_particles(scene, some, rays, sample.light);
+    sample.next_rule = render_particles(scene, plan, some, rays, sample.light);
     return sample;
   }
   scene.dots = select_dots(scene.dots, some);
   scene.setup.target.polarity = Polarity::bright;
-  sample.light = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light;
+  sample.light = RaysRenderer().render(scene, plan, scene.dots, RenderImages::yes, RenderTheory::no).light;
   return sample;
 }
 
@@ -95,15 +96,16 @@ double brightest_pixel(SampleImages const& sample) {
   return brightest;
 }
 
-double measure_image_error(Scene const& scene, double level) {
+double measure_image_error(Scene const& scene, RenderPlan const& plan, double level) {
   if (scene.second_medium) {
-    return std::fmax(measure_image_error(select_first_pulse(scene), level),
-                     measure_image_error(select_second_pulse(scene), level));
+    return std::fmax(measure_image_error(select_first_pulse(scene), plan, level),
+                     measure_image_error(select_second_pulse(scene), plan, level));
   }
   Scene one = scene, other = scene;
   one.setup.render.seed = repeat_seed(scene.setup.render.seed, 1000003u);
   other.setup.render.seed = repeat_seed(scene.setup.render.seed, 1000004u);
-  SampleImages const a = render_sample(std::move(one)), b = render_sample(std::move(other), SampleRays::next_rule);
+  SampleImages const a = render_sample(std::move(one), plan),
+                     b = render_sample(std::move(other), plan, SampleRays::next_rule);
   double worse = std::numeric_limits<double>::quiet_NaN();
   for (auto const frame : {&FramePair<double>::reference, &FramePair<double>::flow}) {
     worse = std::fmax(worse, mean_square(a.light.*frame, b.light.*frame, level, a.share));

@@ -98,7 +98,7 @@ class SourceTracer {
   /// than the margin, or more rays are required, the deposited light is subtracted and the source is traced again. The
   /// result is therefore independent of other sources.
   /// @param images  reference and measurement image; null: light is not deposited
-  /// @return its truth; NaN if no ray passes
+  /// @return truth of the source; NaN if no ray passes
   DotTruth trace(std::uint64_t source, LightImage* const (&images)[frame_count]) {
     use(0);
     SourceAim aim = aim_at_stop(*launch_, view_, medium_, sources_.middle(source), sources_.reach());
@@ -120,7 +120,7 @@ class SourceTracer {
     return source_truth(of_scramblings_, 1 << launch_->choice.scrambling_bits, aim.origin);
   }
 
-  /// Launch that the last source used.
+  /// Returns the launch with which the last source was traced.
   RaysLaunch const& launch() const { return *launch_; }
   StatusCounts const& statuses() const { return statuses_; }
   /// Largest margin by which a source's rays were aimed beyond the stop [m].

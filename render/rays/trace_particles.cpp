@@ -21,7 +21,6 @@ constexpr Vec2d unknown{std::numeric_limits<double>::quiet_NaN(), std::numeric_l
 Rendering empty_rendering(Particles const& particles) {
   Rendering rendering;
   rendering.table = TableState::by_rays;
-  rendering.method = RenderMethod::rays;
   GroundTruth& truth = rendering.truth;
   std::size_t const count = particles.size();
   truth.resize(count);
@@ -49,11 +48,12 @@ void count_rays(Rendering& rendering) {
   rendering.rays = frame_count * std::accumulate(planned.begin(), planned.end(), std::int64_t{0});
 }
 
-Rendering trace_particles(Scene const& scene, Particles const& particles, ParticleLight light, RenderImages images) {
+Rendering trace_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles, ParticleLight light,
+                          RenderImages images) {
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
   bool const lit = images != RenderImages::no;
-  ParticleLaunches const launches(scene, lit ? spot : SpotView{}, images);
+  ParticleLaunches const launches(scene, plan, lit ? spot : SpotView{}, images);
   Rendering rendering = empty_rendering(particles);
   std::optional<LightImage> frames[frame_count];
   LightImage* targets[frame_count] = {};

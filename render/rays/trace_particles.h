@@ -36,6 +36,7 @@ void count_rays(Rendering& rendering);
 
 /// Renders images and truth of particles by ray tracing. Light is in units of photon_unit(), the truth's flux in
 /// photons.
-Rendering trace_particles(Scene const& scene, Particles const& particles, ParticleLight light, RenderImages images);
+Rendering trace_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles, ParticleLight light,
+                          RenderImages images);
 
 }  // namespace gladstone

@@ -143,7 +143,7 @@ void position_lens_from_sensor(Setup& setup) {
     solver.options.cost_threshold = 1e-24;  // [mm^2]
     Eigen::Matrix<double, 1, 1> moved = Eigen::Matrix<double, 1, 1>::Zero();
     auto const& summary = solver.Solve(Function(miss), &moved);
-    constexpr double near_enough = 1e-7;  // [mm]
+    constexpr double near_enough = 1e-7;  // tolerance of the focus [mm]
     if (!(std::sqrt(2 * summary.final_cost) < near_enough)) {
       throw DataError(ErrorCode::invalid_value, KeyPath{"geometry.z_sensor_mm"},
                       "receives no sharp image of the plane in focus at any position of the lens; check lens.focus");

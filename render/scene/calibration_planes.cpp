@@ -44,7 +44,7 @@ std::optional<Pinhole> equivalent_pinhole(Setup const& setup, Camera const& came
   return pinhole;
 }
 
-void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+void cross_check_calibration(Setup const& setup, SetupTable root, Warnings& warnings) {
   SetupTable calibration = root.table("calibration");
   double const mm = unit::millimetre, nearest = *std::max_element(setup.planes.begin(), setup.planes.end());
   double const least = setup.lens.prescription ? 0.0 : setup.lens.focal_length;
@@ -68,15 +68,16 @@ void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<st
   double const px = setup.pixel_size(), diameter_px = setup.dot_diameter() / px;
   if (diameter_px < least_dot_px) {
     warnings.push_back(
-        fmt::format("calibration.dot_diameter_mm: dots are {:.2f} px wide in the image, too few to measure their "
-                    "centres accurately; use at least {} px",
-                    diameter_px, least_dot_px));
+        {WarningCode::unsuitable, "calibration.dot_diameter_mm",
+         fmt::format(
+             "dots are {:.2f} px wide in the image, too few to measure their centres accurately; use at least {} px",
+             diameter_px, least_dot_px)});
   }
   if (double const gap_px = setup.target.spacing / px - diameter_px; gap_px < least_gap_px) {
-    warnings.push_back(
-        fmt::format("calibration.spacing_mm: dots are {:.2f} px apart in the image, edge to edge, but {} px are needed "
-                    "to separate them from the background; use a wider spacing",
-                    gap_px, least_gap_px));
+    warnings.push_back({WarningCode::unsuitable, "calibration.spacing_mm",
+                        fmt::format("dots are {:.2f} px apart in the image, edge to edge, but {} px are needed to "
+                                    "separate them from the background; use a wider spacing",
+                                    gap_px, least_gap_px)});
   }
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/scene/camera.h"
 #include "render/scene/setup.h"
 
@@ -32,6 +33,6 @@ std::optional<Pinhole> equivalent_pinhole(Setup const& setup, Camera const& came
 
 /// Checks a calibration setup: object distances that the lens can image, elements in front of all planes, diameter and
 /// spacing of the dots in the image.
-void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
+void cross_check_calibration(Setup const& setup, SetupTable root, Warnings& warnings);
 
 }  // namespace gladstone

@@ -255,7 +255,8 @@ std::optional<WorldApparentPupil> Camera::apparent_pupil(Vec3d source) const {
 Vec2d Camera::ideal_project(Vec3d point) const {
   Vec3d const q = pose.point_to_local(point);
   double const distance = paraxial.front - q.z, slope = paraxial.chief_slope(distance);
-  double const height = 1 + slope * (distance - paraxial.window_shift);  // at the first surface, per object height
+  double const height = 1 + slope * (distance - paraxial.window_shift);  // height of the chief ray at the first surface
+                                                                         // per height of the point
   double const out = paraxial.whole.a * height + paraxial.whole.b * slope;
   double const out_slope = paraxial.whole.c * height + paraxial.whole.d * slope;
   Ray<double> const leaving{{out * q.x, out * q.y, 0}, {out_slope * q.x, out_slope * q.y, paraxial.forwards}};

@@ -18,7 +18,7 @@ struct ParaxialCamera {
   RayTransfer whole;        ///< ray transfer from the first surface to behind the last
   Pose<double> behind;      ///< pose of the last vertex in the camera's frame, as it appears from the sensor through
                             ///< plates; light leaves along its +z or -z
-  double forwards = 1;      ///< -1: light leaves along -z, after an odd number of mirrors
+  double forwards = 1;      ///< 1: light leaves along +z; -1: along -z, after an odd number of mirrors
   double stop_radius = 0;   ///< radius of the stop [m]; 0: chief rays only
   double window_shift = 0;  ///< apparent shift of objects towards the lens by plates, sum of t (1 - 1/n) [m]
 

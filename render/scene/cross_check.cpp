@@ -13,7 +13,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double widest_spot_px = 200;   // between first zeros [px]; f/64 gives about 10 px
+constexpr double widest_spot_px = 200;   // maximum diameter between first zeros [px]; f/64 gives about 10 px
 constexpr double widest_airy_px = 60;    // the table needs 0.2 GB at this size
 constexpr double finest_pitch = 0.5e-6;  // no camera has smaller pixels [m]
 constexpr double fastest_lens = 0.5;     // f-number at which an aplanatic lens in air accepts a half space
@@ -35,7 +35,7 @@ bool cross_check_camera(Setup const& setup, SetupTable root) {
 }
 
 /// Checks that lens and camera form an image of the dots.
-bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+bool cross_check_lens(Setup const& setup, SetupTable root, Warnings& warnings) {
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
   if (setup.lens.f_number < fastest_lens) {
@@ -62,8 +62,8 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
   }
   if (!setup.has_closed_form_layout() && !cross_check_camera(setup, root)) return false;
   for (OpticalElement const& element : setup.elements) {
-    std::string warning = element.imaging_warning(setup.imaging(), setup.lens.f_number);
-    if (!warning.empty()) warnings.push_back(std::move(warning));
+    if (auto const warning = element.imaging_warning(setup.imaging(), setup.lens.f_number))
+      warnings.push_back(*warning);
   }
   return true;
 }
@@ -77,14 +77,16 @@ std::string metres_hint(double length) {
                      1e3 * millimetres);
 }
 
-void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings) {
+void cross_check_noise(Setup const& setup, Warnings& warnings) {
   if (double const clipped = clipped_at_black(setup.camera); clipped > 0.05) {
     NoiseSetup const& noise = setup.camera.noise;
     double const levels = noise.read_noise_e * (std::pow(2.0, setup.camera.bit_depth) - 1) / noise.full_well_e;
-    warnings.push_back(fmt::format(
-        "camera.offset_dn: the read noise of {:.3g} grey levels is clipped at zero, which makes dark pixels {:.3g} "
-        "levels too bright on average and dim ones less; set camera.offset_dn to {:.0f} or more, as real cameras do",
-        levels, clipped, std::ceil(4 * levels)));
+    warnings.push_back(
+        {WarningCode::unsuitable, "camera.offset_dn",
+         fmt::format(
+             "the read noise of {:.3g} grey levels is clipped at zero, which makes dark pixels {:.3g} levels too "
+             "bright on average and dim ones less; set camera.offset_dn to {:.0f} or more, as real cameras do",
+             levels, clipped, std::ceil(4 * levels))});
   }
 }
 
@@ -104,7 +106,7 @@ void cross_check_spot(Setup const& setup, SetupTable root) {
   }
 }
 
-void cross_check_medium(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+void cross_check_medium(Setup const& setup, SetupTable root, Warnings& warnings) {
   SetupTable medium = root.table("medium");
   cross_check_geometry(setup, root.table("geometry"));
   cross_check_elements(setup, root);
@@ -120,8 +122,8 @@ void cross_check_medium(Setup const& setup, SetupTable root, std::vector<std::st
   cross_check_density(second, medium, warnings, "second_field");
 }
 
-std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
-  std::vector<std::string> warnings = setup.warnings;
+Warnings cross_check(Setup const& setup, SetupTable root) {
+  Warnings warnings = setup.warnings;
   // all other checks require an image
   if (cross_check_lens(setup, root, warnings)) setup.experiment().cross_check(setup, std::move(root), warnings);
   return warnings;

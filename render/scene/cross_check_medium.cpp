@@ -54,23 +54,23 @@ std::string length_key(FieldSetup const& field) {
 
 }  // namespace
 
-void cross_check_thickness(Setup const& setup, std::vector<std::string>& warnings) {
+void cross_check_thickness(Setup const& setup, Warnings& warnings) {
   MediumSetup const& slab = setup.medium;
   double const mm = unit::millimetre, lost = truncated_fraction(slab);
   bool const limited = slab.automatic_thickness && lost > noticeable_loss;
   if (limited || lost > negligible_loss) {
     warnings.push_back(
-        fmt::format("medium.thickness_mm: {:.6g} mm{} cut {:.2g} % of the displacement off, since the field of {:.6g} "
-                    "mm radius extends beyond them; {}",
-                    slab.thickness / mm, limited ? ", all that fits between the dots and the lens," : "", 100 * lost,
-                    radius_along_z(slab.field) / mm,
-                    limited ? "increase geometry.z_d_mm or z_a_mm"
-                            : fmt::format("use \"auto\", {:.6g} mm", automatic_thickness_mm(slab.field))));
+        {WarningCode::approximated, "medium.thickness_mm",
+         fmt::format("{:.6g} mm{} cut {:.2g} % of the displacement off, since the field of {:.6g} mm radius extends "
+                     "beyond them; {}",
+                     slab.thickness / mm, limited ? ", all that fits between the dots and the lens," : "", 100 * lost,
+                     radius_along_z(slab.field) / mm,
+                     limited ? "increase geometry.z_d_mm or z_a_mm"
+                             : fmt::format("use \"auto\", {:.6g} mm", automatic_thickness_mm(slab.field)))});
   }
 }
 
-void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std::string>& warnings,
-                         std::string const& of_field) {
+void cross_check_density(Setup const& setup, SetupTable& medium, Warnings& warnings, std::string const& of_field) {
   double const K = setup.medium.gladstone_dale, ambient = setup.medium.ambient_density;
   if (!is_plausible_refractivity(K * ambient)) {
     medium.problem(
@@ -92,10 +92,11 @@ void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std
     return;
   } else if (densities.endless_range) {
     Vec2d const half = half_extent_at_medium(setup);
-    warnings.push_back(fmt::format(
-        "medium.{}.{}: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of the {:.4g} x {:.4g} mm "
-        "that rays cross, which is impossible; reduce the gradient or increase medium.ambient_density_kg_m3",
-        of_field, key, lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
+    warnings.push_back(
+        {WarningCode::implausible, fmt::format("medium.{}.{}", of_field, key),
+         fmt::format("the density is negative, {:.4g} kg/m^3 at the lowest, over a part of the {:.4g} x {:.4g} mm that "
+                     "rays cross, which is impossible; reduce the gradient or increase medium.ambient_density_kg_m3",
+                     lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre)});
   } else {
     medium.tables(of_field).front().problem(
         key,

@@ -18,7 +18,7 @@ constexpr double touching = 1e-9;  // tolerance for faces in contact [m]
 
 /// Ends of the medium along Z, if the setup determines them (those of a volume are stored in its file).
 struct MediumEnds {
-  double first, last;  ///< [m]
+  double first, last;  ///< Z of the two ends [m]
 };
 std::optional<MediumEnds> medium_ends(Setup const& setup) {
   FieldKind const kind = setup.medium.field.kind;
@@ -42,7 +42,7 @@ struct CameraAxis {
 /// An object on the light path and its extent along the camera's axis.
 struct OnTheWay {
   std::string name;
-  double enters, leaves;               ///< [m]
+  double enters, leaves;               ///< positions on the axis of the object's two ends [m]
   std::optional<std::size_t> element;  ///< index of an optical element; empty: another object
 };
 

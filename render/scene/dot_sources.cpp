@@ -1,5 +1,5 @@
 #include "render/light/calibration_target.h"
-#include "render/scene/renderer.h"
+#include "render/scene/scene.h"
 #include "render/scene/source_kind.h"
 #include "render/scene/source_sample.h"
 
@@ -62,10 +62,6 @@ std::size_t retain_dots(Scene& scene, std::function<bool(Vec2d pixel)> const& ne
   return retained.size();
 }
 
-Rendering render_dots(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory) {
-  return renderer.render(scene, scene.dots, images, theory);
-}
-
 }  // namespace
 
 constinit SourceKind const dot_sources{.one = "dot",
@@ -78,7 +74,6 @@ constinit SourceKind const dot_sources{.one = "dot",
                                        .count = count_dots,
                                        .place = place_of_dot,
                                        .in_view = is_dot_in_view,
-                                       .retain = retain_dots,
-                                       .render = render_dots};
+                                       .retain = retain_dots};
 
 }  // namespace gladstone

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/scene/source_kind.h"
 #include "render/setup/setup_table.h"
 
@@ -15,18 +16,18 @@ struct Experiment {
   char const* name;             ///< value of the key `experiment`
   SourceKind const& sources;    ///< light sources
   char const* focus_word;       ///< value of lens.focus for a lens in focus on the sources
-  bool measures_density;        ///< the medium causes the displacement between the frames (Eq. 9)
-  bool correlated;              ///< two frames, which are correlated; otherwise one frame for each plane
-  bool medium_in_first_frame;   ///< otherwise the first frame is without medium
+  bool measures_density;        ///< true: the medium causes the displacement between the frames (Eq. 9)
+  bool correlated;              ///< true: two frames, which are correlated; false: one frame for each plane
+  bool medium_in_first_frame;   ///< true: both frames see the medium; false: the first frame is without medium
   char const* reason_for_rays;  ///< reason against the fast renderer; empty: it may apply
 
   /// Reads the distance from the medium to the dots; refuses it for experiments without dots behind a medium.
   void (*read_z_d)(Setup& setup, SetupTable geometry);
-  /// Reads the tables of the experiment, and refuses those of the others.
+  /// Reads the tables of the experiment, and refuses tables of other experiments.
   /// @param setup  camera, lens, elements, geometry and medium have been read
   void (*read)(Setup& setup, SetupTable root);
   /// Checks a setup whose lens forms an image across tables, see cross_check().
-  void (*cross_check)(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
+  void (*cross_check)(Setup const& setup, SetupTable root, Warnings& warnings);
 };
 
 extern Experiment const bos_experiment, piv_experiment, calibration_experiment;

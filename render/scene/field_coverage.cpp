@@ -58,13 +58,13 @@ FieldCoverage field_coverage(Bounds<double> const& box, Setup const& setup) {
   return coverage;
 }
 
-std::string FieldCoverage::warning() const {
+std::optional<Warning> FieldCoverage::warning() const {
   bool const endless = !(field.x < unbounded && field.y < unbounded);
   bool const small = share < least_share, huge = !endless && ratio > another_unit;
   if (!small && !huge) return {};
   double const mm = unit::millimetre;
   std::string text = fmt::format(
-      "medium.field: the field is {:.4g} x {:.4g} mm wide and fills {:.2g} % of the {:.4g} x {:.4g} mm of the view at "
+      "the field is {:.4g} x {:.4g} mm wide and fills {:.2g} % of the {:.4g} x {:.4g} mm of the view at "
       "its position",
       field.x / mm, field.y / mm, 100 * share, view.x / mm, view.y / mm);
   if (huge) {
@@ -74,10 +74,10 @@ std::string FieldCoverage::warning() const {
     text += fmt::format("; with lengths in metres, it would be {:.4g} x {:.4g} mm wide", field.x / mm * 1e3,
                         field.y / mm * 1e3);
   }
-  return text + "; check medium.field.spacing_mm and center_mm";
+  return Warning{WarningCode::implausible, "medium.field", text + "; check medium.field.spacing_mm and center_mm"};
 }
 
-std::string side_face_warning(BuiltMedium const& medium, Setup const& setup) {
+std::optional<Warning> side_face_warning(BuiltMedium const& medium, Setup const& setup) {
   if (setup.medium.field.kind != FieldKind::file) return {};
   Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, medium.view);
   double const ambient = setup.medium.ambient_refractivity();
@@ -99,12 +99,13 @@ std::string side_face_warning(BuiltMedium const& medium, Setup const& setup) {
     }
   }
   if (faces.empty()) return {};
-  return fmt::format(
-      "medium.field: the field ends within the view at {}, where its density differs from "
-      "medium.ambient_density_kg_m3 by up to {:.2g} % of the field's range (rms), so that the images show an edge "
-      "there; set the ambient density to that of the field's border, or, if the field should cover the view, check "
-      "medium.field.axes and spacing_mm (gladstone info field shows how the file is read)",
-      faces, 100 * largest);
+  return Warning{
+      WarningCode::implausible, "medium.field",
+      fmt::format("the field ends within the view at {}, where its density differs from medium.ambient_density_kg_m3 "
+                  "by up to {:.2g} % of the field's range (rms), so that the images show an edge there; set the "
+                  "ambient density to that of the field's border, or, if the field should cover the view, check "
+                  "medium.field.axes and spacing_mm (gladstone info field shows how the file is read)",
+                  faces, 100 * largest)};
 }
 
 }  // namespace gladstone

@@ -17,10 +17,10 @@ FieldMap FieldMap::ambient(Setup const& setup, int spacing_px) {
           Image<Vec2d>(columns, rows)};
 }
 
-FieldMap map_field(Scene const& scene, int spacing_px) {
+FieldMap map_field(Scene const& scene, double longest_step, int spacing_px) {
   FieldMap map = FieldMap::ambient(scene.setup, spacing_px);
   MediumSetup const& setup = scene.setup.medium;
-  double const step = std::min(scene.step, scene.medium.coarsest_step);
+  double const step = std::min(longest_step, scene.medium.coarsest_step);
   std::visit(
       [&](auto const& medium) {
         parallel_for(static_cast<std::size_t>(map.density.rows()), [&](std::size_t line) {

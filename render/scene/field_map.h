@@ -22,8 +22,9 @@ struct FieldMap {
 };
 
 /// Computes the map of a set-up with an ideal thin lens on the Z axis; map_field_by_rays() treats any camera.
+/// @param longest_step  maximum integration step [m]
 /// @param spacing_px  lattice constant [px]
-FieldMap map_field(Scene const& scene, int spacing_px);
+FieldMap map_field(Scene const& scene, double longest_step, int spacing_px);
 
 /// Strain of a displacement field in the image, g = -d Delta / dx.
 struct StrainMap {

@@ -49,7 +49,7 @@ enum class TruthPath : int {
   table,  ///< integral of the deflection table over the light cone, corrected by traced rays
 };
 
-/// Results of a dot's rays from which its truth follows, on CPU or GPU.
+/// Sums over the traced rays of one dot, from which GroundTruth::set_hits() computes its true displacement.
 struct DotTruth {
   Vec2d origin;  ///< position to which the sums are relative [px]
   CentroidSum<double> hits[2];
@@ -69,8 +69,8 @@ struct ParticleTruth {
 /// Displacements are measurement image minus reference image (PIV: frame B minus frame A).
 struct GroundTruth {
   std::vector<Vec3d> position_m;
-  std::vector<Vec2d> reference_px;     ///< radiance-weighted centroid of the rays that pass the stop; NaN: none passes
-  std::vector<Vec2d> displacement_px;  ///< measurement centroid minus reference centroid
+  std::vector<Vec2d> reference_px;  ///< radiance-weighted centroid of the rays that pass the stop; NaN: no ray passes
+  std::vector<Vec2d> displacement_px;        ///< measurement centroid minus reference centroid
   std::vector<Vec2d> displacement_error_px;  ///< standard error of displacement_px; NaN: unknown (truth_error.h)
   std::vector<Vec2d> displacement_std_px;    ///< weighted standard deviation of the hits in the measurement image
   std::vector<Vec2d> flux;  ///< light in reference (x) and measurement image (y) [fully lit px; particles: photons]

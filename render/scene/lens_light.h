@@ -19,7 +19,8 @@ struct LensLight {
 
   /// Returns the photons through the lens per incident photon fluence [m^2].
   /// @param cross_section  differential cross-section of the source towards the lens [m^2/sr]
-  /// @param way            vector from the source to the lens' centre [m], of the given length
+  /// @param way            vector from the source to the lens' centre [m]
+  /// @param far            length of `way` [m]
   GLADSTONE_HD double operator()(double cross_section, Vec3d way, double far) const {
     using std::abs;
     double const facing = abs(dot(axis, way)) / far;

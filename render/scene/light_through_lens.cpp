@@ -5,6 +5,7 @@
 #include "render/base/parallel.h"
 #include "render/light/lambert_sphere.h"
 #include "render/scene/particle_scene.h"
+#include "render/sensor/detector.h"
 
 namespace gladstone {
 
@@ -60,6 +61,13 @@ double photon_limited_exposure(Scene const& scene) {
   NoiseSetup const& noise = scene.setup.camera.noise;
   if (!scene.setup.experiment().sources.in_photons || !noise.enabled) return std::numeric_limits<double>::infinity();
   return scene.photon_unit * noise.quantum_efficiency;
+}
+
+double choose_exposure(Scene const& scene, RenderedLight const& light) {
+  CameraSetup const& camera = scene.setup.camera;
+  if (camera.absolute_exposure) return scene.photon_unit * camera.noise.quantum_efficiency;
+  if (camera.exposure_e) return *camera.exposure_e;
+  return std::min(Detector::auto_exposure(camera, light.brightest()), photon_limited_exposure(scene));
 }
 
 double photon_unit(Scene const& scene, Particles const& particles, ParticleLight light) {

@@ -98,22 +98,22 @@ void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
 }
 
 /// Returns a warning if the geometric image of a particle is at least half as wide as PSF or pixel: added in quadrature
-/// (Adrian & Yao 1985), it enlarges the image's diameter by an eighth. Empty otherwise.
-std::string warning_of_wide_particles(Scene const& scene) {
+/// (Adrian & Yao 1985), it enlarges the image's diameter by an eighth.
+std::optional<Warning> warning_of_wide_particles(Scene const& scene) {
   std::vector<double> const& diameter = scene.particles.diameter;
   if (diameter.empty()) return {};
   double const widest = *std::max_element(diameter.begin(), diameter.end()), px = widest / scene.setup.pixel_size();
   double const point_px = std::max(scene.setup.spot_diameter_px(), 1.0);
   if (px <= 0.5 * point_px) return {};
-  return fmt::format(
-      "particles.diameter_um: the largest, {:.4g} um, has an image {:.2g} px wide, but is rendered as a point ({:.2g} "
-      "px wide by diffraction and pixel size); use smaller ones",
-      widest / unit::micrometre, px, point_px);
+  return Warning{WarningCode::approximated, "particles.diameter_um",
+                 fmt::format("the largest, {:.4g} um, has an image {:.2g} px wide, but is rendered as a point ({:.2g} "
+                             "px wide by diffraction and pixel size); use smaller ones",
+                             widest / unit::micrometre, px, point_px)};
 }
 
-/// Returns a warning if the volume ends within the view. Empty if it fills the view, is not given, or no particle is in
-/// view.
-std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& census) {
+/// Returns a warning if the volume ends within the view. Nullopt if it fills the view, is not given, or no particle
+/// is in view.
+std::optional<Warning> warning_of_small_volume(Scene const& scene, ParticleCensus const& census) {
   constexpr int along = 16;            // points of the view along each side
   constexpr double negligible = 0.01;  // tolerated fraction of these points outside the volume
   ParticleSetup const& particles = scene.setup.piv->particles;
@@ -137,15 +137,16 @@ std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& ce
   });
   double const share = static_cast<double>(std::count(outside.begin(), outside.end(), 1)) / std::max(1, seen.load());
   if (share < negligible) return {};
-  return fmt::format(
-      "particles.volume_mm: the volume is smaller than the view: {:.0f} % of the image shows no particles (the sensor "
-      "sees about {:.4g} x {:.4g} mm of the sheet); enlarge volume_mm, or check center_mm",
-      100 * share, camera.columns * scene.setup.pixel_size() * 1e3, camera.rows * scene.setup.pixel_size() * 1e3);
+  return Warning{
+      WarningCode::out_of_view, "particles.volume_mm",
+      fmt::format("the volume is smaller than the view: {:.0f} % of the image shows no particles (the sensor sees "
+                  "about {:.4g} x {:.4g} mm of the sheet); enlarge volume_mm, or check center_mm",
+                  100 * share, camera.columns * scene.setup.pixel_size() * 1e3,
+                  camera.rows * scene.setup.pixel_size() * 1e3)};
 }
 
 /// Returns a warning if most of the volume is dark, with less than a thousandth of the light in the sheet's middle.
-/// Empty otherwise.
-std::string warning_of_dark_volume(Scene const& scene) {
+std::optional<Warning> warning_of_dark_volume(Scene const& scene) {
   PivSetup const& piv = *scene.setup.piv;
   if (!piv.particles.volume) return {};
   Pose<double> const sheet = laser_sheet(piv.laser).pose[0];
@@ -160,21 +161,23 @@ std::string warning_of_dark_volume(Scene const& scene) {
   double const lit = std::max(0.0, std::min(half_depth, offset + reach) - std::max(-half_depth, offset - reach));
   double const share = lit / (2 * half_depth);
   if (!(share < lit_share)) return {};
-  return fmt::format(
-      "particles.volume_mm: {:.0f} % of the volume lies outside the laser sheet, where particles are counted "
-      "(particles.per_pixel, number) but not seen; make the volume as thin as the sheet, {:.4g} mm with its tails, or "
-      "check laser.offset_mm",
-      100 * (1 - share), 2 * reach / unit::millimetre);
+  return Warning{WarningCode::exposure, "particles.volume_mm",
+                 fmt::format("{:.0f} % of the volume lies outside the laser sheet, where particles are counted "
+                             "(particles.per_pixel, number) but not seen; make the volume as thin as the sheet, {:.4g} "
+                             "mm with its tails, or check laser.offset_mm",
+                             100 * (1 - share), 2 * reach / unit::millimetre)};
 }
 
-/// Returns a warning if the flow moves particles, but no image by as much as correlation resolves. Empty otherwise.
-std::string warning_of_small_displacements(Scene const& scene, ParticleCensus const& census) {
+/// Returns a warning if the flow moves particles, but no image by as much as correlation resolves.
+std::optional<Warning> warning_of_small_displacements(Scene const& scene, ParticleCensus const& census) {
   if (census.in_view == 0 || !(census.largest_px > 0) || census.largest_px >= measurable_displacement_px) return {};
-  return fmt::format(
-      "flow.dt_us: displacements are too small to measure: no particle in view moves by more than {:.2g} px "
-      "(correlation resolves {} px at best); increase the time between the pulses, to about {:.3g} us for 8 px",
-      census.largest_px, measurable_displacement_px,
-      8 / census.largest_px * scene.setup.piv->flow.dt / unit::microsecond);
+  return Warning{
+      WarningCode::unsuitable, "flow.dt_us",
+      fmt::format(
+          "displacements are too small to measure: no particle in view moves by more than {:.2g} px (correlation "
+          "resolves {} px at best); increase the time between the pulses, to about {:.3g} us for 8 px",
+          census.largest_px, measurable_displacement_px,
+          8 / census.largest_px * scene.setup.piv->flow.dt / unit::microsecond)};
 }
 
 /// @throws DataError if no particle is illuminated at either pulse
@@ -210,13 +213,13 @@ void add_particles_of_sequence(Scene& scene) {
   PivSetup& piv = *scene.setup.piv;
   auto const shared = scene.setup.shared_particles ? scene.setup.shared_particles : std::make_shared<ParticleCache>();
   if (!shared->sequence) {
-    shared->flow_warning = load_flow(piv.flow);
+    shared->flow_warnings = load_flow(piv.flow);
     double const count = piv.particles.count == ParticleCount::file ? 0 : particle_count(scene.setup);
     shared->sequence.emplace(piv.particles, count, piv.flow, laser_sheet(piv.laser),
                              path_tolerance_px * scene.setup.pixel_size());
   }
   piv.flow = shared->sequence->flow();
-  scene.flow_warning = shared->flow_warning;
+  scene.flow_warnings = shared->flow_warnings;
   auto const add_pair = [&](std::size_t pair) {
     scene.particles = shared->sequence->pair(pair);
     require_light(scene.particles);
@@ -270,7 +273,7 @@ void add_particles(Scene& scene) {
     add_particles_of_sequence(scene);
     return;
   }
-  scene.flow_warning = load_flow(scene.setup.piv->flow);
+  scene.flow_warnings = load_flow(scene.setup.piv->flow);
   PivSetup const& piv = *scene.setup.piv;
   LaserSheet<double> const sheet = laser_sheet(piv.laser);
   double const tolerance = path_tolerance_px * scene.setup.pixel_size();
@@ -308,50 +311,52 @@ ParticleCensus count_particles(Scene const& scene) {
   return census;
 }
 
-std::vector<std::string> warnings_of_particles(Scene const& scene) {
-  std::vector<std::string> warnings;
+Warnings warnings_of_particles(Scene const& scene) {
+  Warnings warnings;
   ParticleCensus const census = count_particles(scene);
   if (census.in_view == 0) {
-    warnings.push_back(fmt::format(
-        "particles: none of the {} illuminated at the first pulse lies in the camera's view: the images will be empty; "
-        "check particles.center_mm and volume_mm, laser.offset_mm and the position of the camera",
-        census.lit[0]));
+    warnings.push_back(
+        {WarningCode::out_of_view, "particles",
+         fmt::format("none of the {} illuminated at the first pulse lies in the camera's view: the images will be "
+                     "empty; check particles.center_mm and volume_mm, laser.offset_mm and the position of the camera",
+                     census.lit[0])});
   } else if (static_cast<double>(census.paired) < kept_pairs * static_cast<double>(census.in_view)) {
     warnings.push_back(
-        fmt::format("flow: {:.0f} % of the particles in view have left the volume or most of the sheet's light by the "
-                    "second pulse (beyond a quarter, correlation suffers; Keane & Adrian 1990); shorten flow.dt_us, or "
-                    "use a thicker sheet in a thicker volume",
-                    100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
+        {WarningCode::unsuitable, "flow",
+         fmt::format("{:.0f} % of the particles in view have left the volume or most of the sheet's light by the "
+                     "second pulse (beyond a quarter, correlation suffers; Keane & Adrian 1990); shorten flow.dt_us, "
+                     "or use a thicker sheet in a thicker volume",
+                     100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view))});
   }
-  for (std::string const& text : {warning_of_wide_particles(scene), warning_of_small_volume(scene, census),
-                                  warning_of_dark_volume(scene), warning_of_small_displacements(scene, census)}) {
-    if (!text.empty()) warnings.push_back(text);
+  for (auto const& warning : {warning_of_wide_particles(scene), warning_of_small_volume(scene, census),
+                              warning_of_dark_volume(scene), warning_of_small_displacements(scene, census)}) {
+    if (warning) warnings.push_back(*warning);
   }
-  if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);
+  warnings.insert(warnings.end(), scene.flow_warnings.begin(), scene.flow_warnings.end());
   if (std::size_t const outside = scene.particles.outside_flow; outside > 0) {
-    warnings.push_back(
-        fmt::format("flow.file: {} of {} particles are outside the velocity field at either pulse (they move with the "
-                    "velocity at its edge); use a larger field, or a smaller particles.volume_mm",
-                    outside, scene.particles.size()));
+    warnings.push_back({WarningCode::assumed, "flow.file",
+                        fmt::format("{} of {} particles are outside the velocity field at either pulse (they move with "
+                                    "the velocity at its edge); use a larger field, or a smaller particles.volume_mm",
+                                    outside, scene.particles.size())});
   }
   PathPlan const& path = scene.particles.path;
   double const px = scene.setup.pixel_size();
   if (path.error > path_tolerance_px * px) {
-    warnings.push_back(
-        fmt::format("flow: doubling the {} integration steps of a particle's path still changes its end by {:.2g} px; "
-                    "shorten flow.dt_us",
-                    path.steps, path.error / px));
+    warnings.push_back({WarningCode::low_accuracy, "flow",
+                        fmt::format("doubling the {} integration steps of a particle's path still changes its end by "
+                                    "{:.2g} px; shorten flow.dt_us",
+                                    path.steps, path.error / px)});
   }
   if (path.lag_error > 0.01 * px) {
-    warnings.push_back(
-        fmt::format("particles.density_kg_m3: the lag is computed to first order in the response time only; the "
-                    "second-order term would move particles by another {:.2g} px; use smaller or lighter ones",
-                    path.lag_error / px));
+    warnings.push_back({WarningCode::approximated, "particles.density_kg_m3",
+                        fmt::format("the lag is computed to first order in the response time only; the second-order "
+                                    "term would move particles by another {:.2g} px; use smaller or lighter ones",
+                                    path.lag_error / px)});
   }
   return warnings;
 }
 
-void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+void cross_check_particles(Setup const& setup, SetupTable root, Warnings& warnings) {
   PivSetup const& piv = *setup.piv;
   SetupTable particles = root.table("particles"), laser = root.table("laser");
   double const mm = unit::millimetre;
@@ -398,16 +403,17 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
           "\"camera\", or remove the element");
     } else if (element.side() == ElementSide::camera && piv.particles.volume &&
                face < piv.particles.center.z + piv.particles.volume->z / 2) {
-      element_tables(root)[i].table.problem(
-          "position_mm",
-          fmt::format("puts it at Z = {:.6g} mm, inside the particles' volume or behind it; move one", z / mm));
+      element_tables(root)[i].table.problem("position_mm",
+                                            fmt::format("puts the element at Z = {:.6g} mm, inside the particles' "
+                                                        "volume or behind it; move the element or the volume",
+                                                        z / mm));
     }
   }
   if (setup.camera.absolute_exposure && !setup.camera.noise.enabled) {
-    warnings.push_back(
-        fmt::format("camera.exposure: \"absolute\" uses the default quantum efficiency of {:.3g} and full well of "
-                    "{:.6g}, since there is no table [camera.noise]",
-                    setup.camera.noise.quantum_efficiency, setup.camera.noise.full_well_e));
+    warnings.push_back({WarningCode::assumed, "camera.exposure",
+                        fmt::format("\"absolute\" uses the default quantum efficiency of {:.3g} and full well of "
+                                    "{:.6g}, since there is no table [camera.noise]",
+                                    setup.camera.noise.quantum_efficiency, setup.camera.noise.full_well_e)});
   }
 }
 

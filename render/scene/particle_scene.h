@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/light/mie_scattering.h"
 #include "render/scene/lens_light.h"
 #include "render/scene/renderer.h"
@@ -51,16 +52,20 @@ double photons_through_lens(Scene const& scene, std::size_t particle, int pulse)
 /// Returns the largest number of photons that any of the particles sends through the lens; 0 if none is illuminated.
 double brightest_photons(Scene const& scene, Particles const& particles, ParticleLight light);
 
-/// Returns the number of photons that corresponds to a light of 1 in images of the particles.
+/// Returns the number of photons per unit of light in images of the particles.
 /// For scattered laser light this is scene.photon_unit. Light that is equal in all directions is stronger by the ratio
-/// of a square metre to the scattering cross-section, 1e12 or more, which exceeds the range of the fixed-point images;
-/// its unit is therefore the brightest of the particles.
+/// of a square metre to the scattering cross-section, 1e12 or more, and would exceed the range of the fixed-point
+/// images; the unit is therefore the light of the brightest particle.
 double photon_unit(Scene const& scene, Particles const& particles, ParticleLight light);
 
-/// Returns the number of electrons that a light of 1 generates: its photons times the quantum efficiency. This limits
+/// Returns the number of electrons per unit of light: photons per unit of light times quantum efficiency. This limits
 /// the exposure if the sensor has noise. Returns infinity without noise, where the full well only scales the grey
 /// levels, and for BOS, whose light is not counted in photons.
 double photon_limited_exposure(Scene const& scene);
+
+/// Returns the exposure: the camera's own, or the one chosen from the brightest pixel, but at most the electrons
+/// released by the particles' photons (photon_limited_exposure()) [e].
+double choose_exposure(Scene const& scene, RenderedLight const& light);
 
 /// Smallest displacement that correlation resolves at best; smaller displacements cause a warning [px].
 inline constexpr double measurable_displacement_px = 0.01;
@@ -68,17 +73,18 @@ inline constexpr double measurable_displacement_px = 0.01;
 /// Particle counts from which the warnings of a PIV case are derived.
 struct ParticleCensus {
   std::size_t lit[2] = {0, 0};  ///< number of illuminated particles at each pulse
-  std::size_t in_view = 0;      ///< number of those at the first pulse whose chief ray meets the sensor
-  std::size_t paired = 0;       ///< number of those in view with at least a tenth of the light at the second pulse
-  double largest_px = 0;        ///< largest image displacement of those in view, without medium [px]
+  std::size_t in_view = 0;      ///< number of particles lit at the first pulse whose chief ray meets the sensor
+  /// number of particles in view that receive at least a tenth of this light at the second pulse
+  std::size_t paired = 0;
+  double largest_px = 0;  ///< largest image displacement of the particles in view, without medium [px]
 };
 ParticleCensus count_particles(Scene const& scene);
 
 /// Returns warnings for particles or flows that prevent a measurement.
-std::vector<std::string> warnings_of_particles(Scene const& scene);
+Warnings warnings_of_particles(Scene const& scene);
 
 /// Checks a PIV setup across keys: particles that scatter no light, a laser sheet outside the volume, optical elements,
 /// wavelengths.
-void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
+void cross_check_particles(Setup const& setup, SetupTable root, Warnings& warnings);
 
 }  // namespace gladstone

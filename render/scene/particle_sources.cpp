@@ -1,5 +1,4 @@
 #include "render/scene/particle_scene.h"
-#include "render/scene/renderer.h"
 #include "render/scene/source_kind.h"
 
 namespace gladstone {
@@ -41,10 +40,6 @@ std::size_t retain_particles(Scene& scene, std::function<bool(Vec2d pixel)> cons
   return lit;
 }
 
-Rendering render_lit_particles(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory /*theory*/) {
-  return renderer.render_particles(scene, scene.particles, ParticleLight::scattered, images);
-}
-
 }  // namespace
 
 constinit SourceKind const particle_sources{.one = "particle",
@@ -57,7 +52,6 @@ constinit SourceKind const particle_sources{.one = "particle",
                                             .count = particles_in_scene,
                                             .place = place_of_particle,
                                             .in_view = is_particle_in_view,
-                                            .retain = retain_particles,
-                                            .render = render_lit_particles};
+                                            .retain = retain_particles};
 
 }  // namespace gladstone

@@ -5,6 +5,7 @@
 
 #include "render/base/units.h"
 #include "render/scene/ray_hit.h"
+#include "render/scene/shift_limit.h"
 #include "render/scene/spot.h"
 
 namespace gladstone {
@@ -14,34 +15,40 @@ constexpr std::uint64_t most_rays = std::uint64_t{1} << 16, always_allowed = 102
 
 }  // namespace
 
-Scene with_step(Scene scene, IntegrationStep const& plan) {
-  scene.step = plan.step_mm * unit::millimetre;
-  scene.widen_pupil(1.25 * plan.largest_shift);
-  return scene;
+RenderPlan with_step(Scene const& scene, IntegrationStep const& step) {
+  RenderPlan plan;
+  plan.step_estimate = step;
+  plan.step = step.step_mm * unit::millimetre;
+  plan.pupil_margin = 1.25 * step.largest_shift;
+  check_deflection_limit(plan.pupil_margin, scene.setup.z_b());
+  return plan;
 }
 
-double ray_seconds(Scene const& scene) {
+double ray_seconds(Scene const& scene, RenderPlan const& plan) {
   // Times [s]: emission, lens and sums; a step of the ray through the medium; a pixel of the PSF; a lens surface.
   constexpr double a_ray = 0.6e-6, a_step = 0.12e-6, a_pixel = 1.4e-9, a_surface = 60e-9;
   std::optional<AiryTable> airy;
   double const width = 2 * make_spot(scene, airy).half_width() + 1;
   double const surfaces =
       scene.setup.has_closed_form_layout() ? 0.0 : static_cast<double>(scene.camera.elements.size());
-  return a_ray + a_step * scene.steps_across() + frame_count * (a_pixel * width * width + a_surface * surfaces);
+  return a_ray + a_step * scene.steps_across(plan.step) +
+         frame_count * (a_pixel * width * width + a_surface * surfaces);
 }
 
-double rays_seconds(Scene const& scene) { return static_cast<double>(scene.source_count()) * ray_seconds(scene); }
+double rays_seconds(Scene const& scene, RenderPlan const& plan) {
+  return static_cast<double>(scene.source_count()) * ray_seconds(scene, plan);
+}
 
-double theory_ray_seconds(Scene const& scene) {
+double theory_ray_seconds(Scene const& scene, RenderPlan const& plan) {
   constexpr double a_sample = 20e-9;  // a sample of the gradient [s]
   constexpr int samples_of_panel = 3;
-  double const longest = std::min(scene.step, scene.medium.coarsest_step);
-  double const panels = longest > 0 ? std::ceil(scene.steps_across() * scene.step / longest) : 0;
+  double const longest = std::min(plan.step, scene.medium.coarsest_step);
+  double const panels = longest > 0 ? std::ceil(scene.steps_across(plan.step) * plan.step / longest) : 0;
   return samples_of_panel * panels * a_sample;
 }
 
-std::uint64_t max_rays_per_source(Scene const& scene) {
-  double const seconds = ray_seconds(scene);
+std::uint64_t max_rays_per_source(Scene const& scene, RenderPlan const& plan) {
+  double const seconds = ray_seconds(scene, plan);
   std::uint64_t most = always_allowed;
   while (most < most_rays && 2 * static_cast<double>(most) * seconds <= source_budget_s) most *= 2;
   return most;
@@ -51,14 +58,6 @@ int error_bit_depth(CameraSetup const& camera) { return std::min(camera.bit_dept
 
 double light_per_level(CameraSetup const& camera, double exposure_e) {
   return camera.noise.full_well_e / exposure_e / (std::exp2(error_bit_depth(camera)) - 1);
-}
-
-Scene with_rays(Scene scene, RayBudget const& budget) {
-  scene.rays_per_dot = budget.rays;
-  scene.adaptive_criteria = budget.adaptive_criteria;
-  scene.fineness = budget.fineness;
-  if (budget.method != RenderMethod::automatic) scene.setup.render.method = budget.method;
-  return scene;
 }
 
 }  // namespace gladstone

@@ -14,7 +14,7 @@ template <class T>
 struct RayHit {
   RayStatus status = RayStatus::alive;
   Vec2<T> pixel{};    ///< position on the sensor's plane [px]; valid if reaches_sensor_plane(status)
-  T weight{};         ///< weight at the sensor: that of the emitted ray times transmission; 0: blocked
+  T weight{};         ///< weight at the sensor: weight of the emitted ray times transmission; 0: blocked
   Vec2<T> at_lens{};  ///< intersection with the aim plane, in its frame [m]
 };
 

@@ -65,11 +65,11 @@ std::vector<std::string> names_of(Scene const& scene) {
 
 }  // namespace
 
-RayLosses sample_ray_losses(Scene const& scene) {
+RayLosses sample_ray_losses(Scene const& scene, RenderPlan const& plan) {
   std::vector<std::size_t> const sources =
       scene.source_count() > 0 ? choose_sample(sources_in_view(scene), sampled_sources) : std::vector<std::size_t>{};
   CameraView<double> const camera = scene.camera.view();
-  TracingOptions<double> const options{scene.step, scene.setup.medium.ambient_refractivity(),
+  TracingOptions<double> const options{plan.step, scene.setup.medium.ambient_refractivity(),
                                        scene.setup.medium.integrator, scene.setup.medium.faces};
   RayLosses losses;
   losses.rays = scene.camera.chief_rays_only() ? 1 : static_cast<std::size_t>(sampled_rays);

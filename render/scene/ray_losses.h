@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/scene/ray_hit.h"
-#include "render/scene/scene.h"
+#include "render/scene/render_plan.h"
 
 /// Diagnosis of ray losses: the elements at which a sample of a scene's rays is blocked or lost. Renderers count lost
 /// rays by cause only.
@@ -31,6 +31,6 @@ struct RayLosses {
 /// The rays fill the entrance pupil as seen from the source without medium. Rays are lost at other apertures, outside
 /// the edge of an aberrated pupil, and where the medium deflects them past the stop; rays that the medium deflects into
 /// the stop are not sampled. A camera without a stop has one ray per source.
-RayLosses sample_ray_losses(Scene const& scene);
+RayLosses sample_ray_losses(Scene const& scene, RenderPlan const& plan);
 
 }  // namespace gladstone

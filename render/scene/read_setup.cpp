@@ -70,10 +70,10 @@ bool take_depth_of_volume(Setup& setup, SetupTable medium) {
     return false;
   }
   if (!slab.automatic_thickness && std::abs(slab.thickness - depth) > 1e-6 * depth) {
-    setup.warnings.push_back(
-        fmt::format("medium.thickness_mm: {:.6g} mm is not used, since a volume has its own depth, {:.6g} "
-                    "mm; leave it out, or give medium.field.spacing_mm",
-                    slab.thickness / unit::millimetre, depth / unit::millimetre));
+    setup.warnings.push_back({WarningCode::ignored, "medium.thickness_mm",
+                              fmt::format("{:.6g} mm is not used, since a volume has its own depth, {:.6g} mm; leave "
+                                          "it out, or give medium.field.spacing_mm",
+                                          slab.thickness / unit::millimetre, depth / unit::millimetre)});
   }
   slab.thickness = depth;
   medium.resolve("thickness_mm", depth / unit::millimetre);
@@ -162,7 +162,7 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
 
 /// Looks up the glasses of optical elements. Problems are recorded at the keys `glass`.
 void find_element_glasses(Setup& setup, std::vector<ElementTable> tables, GlassCatalogue const& glasses,
-                          std::vector<std::string>& warnings) {
+                          Warnings& warnings) {
   double const wavelength = setup.medium.wavelength;
   for (std::size_t i = 0; i < setup.elements.size(); ++i) {
     std::string const* const name = setup.elements[i].glass();
@@ -182,14 +182,13 @@ void find_element_glasses(Setup& setup, std::vector<ElementTable> tables, GlassC
 
 /// Prepares lens and other optical elements for the setup's wavelength, and determines the principal plane of a lens
 /// that is positioned by its first vertex.
-void build_optics(Setup& setup, SetupTable root, std::vector<ElementTable> const& elements,
-                  std::vector<std::string>& warnings) {
+void build_optics(Setup& setup, SetupTable root, std::vector<ElementTable> const& elements, Warnings& warnings) {
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
   GlassCatalogue const glasses = read_glasses(setup.lens, lens);
   warnings.insert(warnings.end(), glasses.warnings().begin(), glasses.warnings().end());
   if (!setup.lens.file.empty()) {
     std::optional<double> object_distance;
-    if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();  // z_a is that of the vertex
+    if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();  // z_a still counts from the first vertex
     build_prescription(setup.lens, lens, glasses, setup.medium.wavelength, object_distance, warnings);
   }
   if (setup.lens.prescription) {

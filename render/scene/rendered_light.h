@@ -23,9 +23,9 @@ class RenderedLight {
   virtual FramePair<double> to_host() const = 0;
   /// Light of the brightest pixel of both frames.
   virtual double brightest() const = 0;
-  /// Like Detector::record, with independent noise in the two images.
+  /// Records both images with independent noise, see Detector::record().
   virtual RecordedFrames record(Detector const& detector) const = 0;
-  /// Like Detector::ideal.
+  /// Converts both images to grey levels without background and noise, see Detector::ideal().
   virtual std::unique_ptr<StoredFrames const> ideal(Detector const& detector) const = 0;
 };
 

@@ -27,15 +27,15 @@ char const* to_string(TableState state) {
   return "";
 }
 
-Rendering Renderer::render_particles(Scene const&, Particles const&, ParticleLight, RenderImages) {
+Rendering Renderer::render_particles(Scene const&, RenderPlan const&, Particles const&, ParticleLight, RenderImages) {
   throw DeviceError("this renderer supports dots only; particles need the general renderer");
 }
 
-TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {
+TracingPass::TracingPass(Scene const& scene, RenderPlan const& plan, DotPattern const& sources) {
   std::size_t const count = sources.centre.size();
-  rendering.rays = 2 * static_cast<std::int64_t>(count * scene.rays_per_dot);
+  rendering.rays = 2 * static_cast<std::int64_t>(count * plan.rays);
   rendering.truth.resize(count);
-  rendering.truth.rays_planned.assign(count, static_cast<std::int64_t>(scene.rays_per_dot));
+  rendering.truth.rays_planned.assign(count, static_cast<std::int64_t>(plan.rays));
   left_.resize(count);
   for (std::size_t dot = 0; dot < count; ++dot) {
     rendering.truth.position_m[dot] = {sources.centre[dot].x, sources.centre[dot].y, -scene.setup.z_d};

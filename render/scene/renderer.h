@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "render/base/image.h"
 #include "render/scene/ground_truth.h"
+#include "render/scene/render_plan.h"
 #include "render/scene/rendered_light.h"
 #include "render/scene/scene.h"
 
@@ -17,7 +19,7 @@ enum class TableState {
   made,             ///< a table was built
   no_medium,        ///< no medium deflects rays
   no_sources,       ///< no dots in the scene
-  field_too_small,  ///< the field extends hardly beyond the light cones
+  field_too_small,  ///< the field hardly extends beyond the light cones
   field_too_fine,   ///< the table would need too many rays
   by_rays,          ///< rendered ray by ray, which uses no table
   by_formula,       ///< rendered by a formula, without rays
@@ -26,8 +28,19 @@ enum class TableState {
 /// Returns the reason as the end of a sentence "no deflection table, since ..."; empty if there is a table.
 char const* to_string(TableState state);
 
+/// Accuracy of a rendering, measured afterwards.
+struct RenderingAccuracy {
+  TruthAccuracy truth;  ///< standard errors of the true displacements, relative to truth_tolerance_px
+  /// Standard error of the images due to rays [levels at error_bit_depth()]: of a general rendering with an adaptive
+  /// number of rays, or of the dots at side faces if a deflection table was used. NaN: not measured, or no pixel is
+  /// lit.
+  double image_levels = not_measured;
+  std::optional<TableError> table;  ///< error of the deflection table, if the fast renderer was used
+};
+
 /// Result of rendering a scene.
 struct Rendering {
+  RenderPlan plan;                                ///< plan by which it was rendered, with its method
   FramePair<double> light;                        ///< empty if images were not requested or remain on the device
   std::shared_ptr<RenderedLight const> in_place;  ///< light on the device; only with RenderImages::in_place
   GroundTruth truth;
@@ -36,9 +49,9 @@ struct Rendering {
   double pupil_margin = 0;
   std::int64_t rays = 0;          ///< number of rays traced, both images together
   std::vector<std::size_t> left;  ///< fallback dots: without truth or light here, to be rendered by another renderer
+  std::optional<RenderingAccuracy> accuracy;  ///< empty: not measured
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
-  RenderMethod method = RenderMethod::focused_dots;
-  std::string device;  ///< device that rendered it; empty: that of the renderer
+  std::string device;                         ///< device that rendered it; empty: that of the renderer
 
   /// Moves the light of both images to `in_place`, for a device that renders in host memory.
   void store_light_in_place() {
@@ -60,13 +73,14 @@ class Renderer {
   virtual ~Renderer() = default;
   virtual std::string device() const = 0;
 
-  /// Renders `sources` (the scene's dots or virtual ones) of a scene whose step and ray numbers are planned.
-  virtual Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
+  /// Renders `sources`: the scene's dots or virtual ones.
+  virtual Rendering render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, RenderImages images,
+                           RenderTheory theory) = 0;
 
-  /// Renders particles (the scene's own or virtual ones) of a planned PIV scene, with the medium in both frames.
+  /// Renders particles (the scene's own or virtual ones) of a PIV scene, with the medium in both frames.
   /// @throws DeviceError if this renderer does not support particles
-  virtual Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
-                                     RenderImages images);
+  virtual Rendering render_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                                     ParticleLight light, RenderImages images);
 };
 
 /// One attempt at rendering a scene. It is repeated with a larger deflection table if a dot needs one.
@@ -75,10 +89,10 @@ struct TracingPass {
   double largest_aim_distance = 0;  ///< largest distance of any aim point from the axis in the pupil [m]
 
   /// Initialises positions and ray numbers of the dots. The renderer fills in the other results.
-  TracingPass(Scene const& scene, DotPattern const& sources);
+  TracingPass(Scene const& scene, RenderPlan const& plan, DotPattern const& sources);
   /// Stores the result of a dot. Threads may store different dots concurrently.
   /// @param rays  number of rays that the renderer chose
-  /// @param left  true for a fallback dot, which has no truth here
+  /// @param left  true for a fallback dot, which has no truth in this rendering
   void enter(std::size_t dot, DotTruth const& truth, std::int64_t rays, bool left);
   /// Sums up the rays and lists the fallback dots.
   Rendering finish();

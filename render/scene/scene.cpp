@@ -59,7 +59,7 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
 
 }  // namespace
 
-double Scene::steps_across() const {
+double Scene::steps_across(double step) const {
   Bounds<double> const box = std::visit([](auto const& seen) { return seen.bounds(); }, medium.view);
   return step > 0 ? (box.high.z - box.low.z) / step : 0;
 }
@@ -72,16 +72,6 @@ void check_deflection_limit(double shift, double z_b) {
                   fmt::format("deflects rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which "
                               "no real set-up does; reduce its gradients, or check their unit",
                               shift / unit::millimetre, z_b / unit::millimetre));
-}
-
-void Scene::widen_pupil(double margin) {
-  check_deflection_limit(margin, setup.z_b());
-  pupil_margin = margin;
-}
-
-double Scene::pupil_radius(double rays) const {
-  double const stop = imaging.entrance_pupil / 2;
-  return stop * std::sqrt(1 + stop_edge(rays) / 2) + pupil_margin;
 }
 
 double Scene::spot_scale_px() const { return setup.spot_scale_px(); }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/light/dot_pattern.h"
 #include "render/light/particles.h"
 #include "render/medium/field_volume.h"
@@ -14,29 +15,20 @@
 
 namespace gladstone {
 
-/// Camera-dependent criteria by which the general renderer chooses the number of rays of each source.
-struct AdaptiveRayCriteria {
-  double level = 0;         ///< light of one grey level
-  double brightest_at = 0;  ///< grey levels of the brightest pixel at the chosen exposure
-};
-
-/// A setup prepared for ray tracing. Owns the dots or particles and the medium.
+/// A setup prepared for ray tracing: a value that nothing changes after build_scene(). Owns the dots or particles and
+/// the medium.
 struct Scene {
   Setup setup;
   ImagingGeometry imaging{};
   Camera camera;
   DotPattern dots;                           ///< dots of the target; empty for PIV
   Particles particles;                       ///< particles; PIV only
-  std::string flow_warning;                  ///< assumptions made about the velocity file
+  Warnings flow_warnings;                    ///< assumptions made about the velocity file
   std::shared_ptr<MieScattering const> mie;  ///< scattering of the particles; null: matt white spheres
-  double photon_unit = 1;  ///< photons for a light of 1: those of the brightest particle through the lens
+  double photon_unit = 1;  ///< number of photons per unit of image light: that of the brightest particle through the
+                           ///< lens; 1 without particles
   BuiltMedium medium;
   std::optional<BuiltMedium> second_medium;  ///< medium at the second laser pulse, if different
-  double step = 0;                           ///< integration step [m]
-  double pupil_margin = 0;         ///< margin by which the pupil is enlarged so that no deflected ray is lost [m]
-  std::uint64_t rays_per_dot = 1;  ///< rays of every source; maximum number if adaptive
-  std::optional<AdaptiveRayCriteria> adaptive_criteria;  ///< criteria of the adaptive ray number; empty: not adaptive
-  int fineness = 1;  ///< refinement of the fast renderer's table and rules: 1, or 2 for steep fronts
 
   /// Number of dots or particles.
   std::size_t source_count() const { return setup.experiment().sources.count(*this); }
@@ -50,23 +42,15 @@ struct Scene {
   /// @pre setup.piv
   Pose<double> sheet_plane() const;
   bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
-  /// Number of integration steps of an axial ray across the medium; 0 without medium.
-  double steps_across() const;
+  /// Returns the number of integration steps of an axial ray across the medium; 0 without medium.
+  /// @param step  [m]
+  double steps_across(double step) const;
   /// Returns the width of the smoothed zone at the edge of the stop as a fraction of its area, which decreases with the
   /// number of rays [1].
   static double stop_edge(double rays);
-  double stop_edge() const { return stop_edge(static_cast<double>(rays_per_dot)); }
-  /// Sets the margin by which the pupil is enlarged [m].
-  /// @throws DataError if rays are deflected by more than 45 degrees before they reach the lens: no real set-up does
-  /// so, and the search for a sufficient margin would not terminate
-  void widen_pupil(double margin);
-  /// Returns the radius of the disc in the lens plane to which rays are sent [m]; decreases with the number of rays per
-  /// dot.
-  double pupil_radius(double rays) const;
-  double pupil_radius() const { return pupil_radius(static_cast<double>(rays_per_dot)); }
   /// Standard deviation of the Gaussian PSF [px]; 0: none.
   double spot_sigma_px() const;
-  /// Like Setup::spot_scale_px().
+  /// Scale of diffraction, as Setup::spot_scale_px() [px].
   double spot_scale_px() const;
   /// Pose of the dots' plane, with the axes of the world's X and Y.
   Pose<double> target_plane() const { return {{0, 0, -setup.z_d}}; }
@@ -104,7 +88,7 @@ void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed,
 /// @throws DataError if the dots cannot be placed, or if the target's file is invalid
 DotPattern build_target(Setup const& setup);
 
-/// Builds the scene: camera, dots or particles, and medium. Step, margin and ray numbers must be planned afterwards
+/// Builds the scene: camera, dots or particles, and medium. Step, margin and ray numbers must be set afterwards
 /// (ray_budget.h).
 /// @param medium  the medium of this setup, if it is already built
 Scene build_scene(Setup const& setup, BuiltMedium const* medium = nullptr);

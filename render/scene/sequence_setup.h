@@ -9,10 +9,10 @@ namespace gladstone {
 /// Largest number of frames of a sequence.
 inline constexpr long long max_sequence_frames = 1'000'000;
 
-/// Table [sequence] of a setup: the pair of a sequence of frames that the setup describes.
+/// Table [sequence] of a setup: the sequence of frames, and which of its pairs the setup describes.
 struct SequenceSetup {
-  /// The pairs are those of consecutive frames (PIV), from 0. Otherwise (BOS) pair k, from 1, consists of the reference
-  /// image, frame 0, and frame k.
+  /// true (PIV): pair k consists of frames k and k + 1, k from 0. false (BOS): pair k consists of the reference image,
+  /// frame 0, and frame k, k from 1.
   bool consecutive = false;
   std::size_t pair = 0;
   std::size_t frames = 2;  ///< number of frames, if they are consecutive

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/base/warning.h"
 #include "render/light/flow.h"
 #include "render/light/laser_sheet.h"
 #include "render/light/particle_sequence.h"
@@ -59,17 +60,20 @@ struct Setup {
   LensSetup lens;
   MediumSetup medium;
   TargetSetup target;
-  std::vector<double> planes;             ///< Z of the planes of a calibration target [m]; empty: no calibration
-  std::optional<PivSetup> piv;            ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
-  std::optional<SequenceSetup> sequence;  ///< pair of a sequence that the setup describes; empty: a single pair
-  std::shared_ptr<ParticleCache> shared_particles;  ///< those of the pairs of a sequence; null: none
+  std::vector<double> planes;  ///< Z of the planes of a calibration target [m]; empty: no calibration
+  /// particles, laser sheet and flow; empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
+  std::optional<PivSetup> piv;
+  /// sequence and the pair of it that the setup describes; empty: a single pair
+  std::optional<SequenceSetup> sequence;
+  std::shared_ptr<ParticleCache> shared_particles;  ///< particles shared by the pairs of a sequence; null: none
   RenderSetup render;
-  double z_a = 0.75;               ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
+  double z_a = 0.75;  ///< distance from the front principal plane to the medium's mid-plane along the camera's axis [m]
   std::optional<double> z_sensor;  ///< position of a fixed sensor on the Z axis, from which the lens is placed [m]
-  double z_d = 0.25;  ///< mid-plane of the medium to the dots, along Z [m]; 0 for PIV and calibration (plane_setup)
+  /// distance from the medium's mid-plane to the dots along Z [m]; 0 for PIV and calibration (plane_setup)
+  double z_d = 0.25;
   std::optional<Pose<double>> pose;  ///< pose of the camera, see camera_pose(); empty: on the Z axis, looking along -Z
   std::vector<OpticalElement> elements;  ///< optical elements besides the lens; those of a side in the light's order
-  std::vector<std::string> warnings;     ///< warnings from reading the setup
+  Warnings warnings;                     ///< warnings from reading the setup
   int view_margin_px = 64;  ///< margin of a target of default extent beyond the view: first-pass window [px]
 
   /// Returns the pose of the front principal plane (of the first vertex if the lens has no principal plane): z along
@@ -122,7 +126,7 @@ struct Setup {
   /// Diameter of a dot on the target, as configured or from dot_diameter_px [m].
   double dot_diameter() const;
   /// Scale of diffraction, N (1 + M) lambda: image distance over pupil diameter times wavelength [px]; 0 for chief
-  /// rays. If an optical element forms images of its own (lenslets), with their f-number in place of N (1 + M).
+  /// rays. If an optical element (lenslets) forms the final images, N (1 + M) is replaced by their f-number.
   double spot_scale_px() const;
   /// Diameter d_d of the rendered diffraction PSF [px]: diameter of the first Airy zero for "airy" and for the Gaussian
   /// matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and "seed_eq8" (pi times
@@ -150,6 +154,6 @@ Setup read_setup(SetupTable root);
 /// Files are opened only to read the size of the field's grid. Problems are recorded at their keys in the setup's
 /// document.
 /// @return warnings
-std::vector<std::string> cross_check(Setup const& setup, SetupTable root);
+Warnings cross_check(Setup const& setup, SetupTable root);
 
 }  // namespace gladstone

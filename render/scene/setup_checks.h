@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/scene/setup.h"
 
 namespace gladstone {
@@ -23,13 +24,13 @@ void refuse_piv_tables(Setup const& setup, SetupTable root);
 std::string metres_hint(double length);
 
 /// Warns of read noise that is clipped at zero.
-void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings);
+void cross_check_noise(Setup const& setup, Warnings& warnings);
 
 /// Reports diffraction PSFs that are too wide to resolve anything.
 void cross_check_spot(Setup const& setup, SetupTable root);
 
 /// Checks the camera's noise, and the media between sources and camera, by the functions below.
-void cross_check_medium(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
+void cross_check_medium(Setup const& setup, SetupTable root, Warnings& warnings);
 
 /// Reports dots or a lens inside the medium.
 void cross_check_geometry(Setup const& setup, SetupTable geometry);
@@ -38,14 +39,14 @@ void cross_check_geometry(Setup const& setup, SetupTable geometry);
 void cross_check_elements(Setup const& setup, SetupTable const& root);
 
 /// Warns if the thickness of the medium truncates a field that is still significant there.
-void cross_check_thickness(Setup const& setup, std::vector<std::string>& warnings);
+void cross_check_thickness(Setup const& setup, Warnings& warnings);
 
 /// Reports closed-form fields with impossible refractive indices, and negative densities.
 /// A uniform gradient reaches negative densities at some distance whatever its strength: inside the view this is only a
 /// warning.
 /// @param of_field  key of the field's table: "field", or "second_field" if `setup` contains the second field in its
 ///   place
-void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std::string>& warnings,
+void cross_check_density(Setup const& setup, SetupTable& medium, Warnings& warnings,
                          std::string const& of_field = "field");
 
 /// Reports steps, or length scales of the field, that would require more than `max_step_count` integration steps across

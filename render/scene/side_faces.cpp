@@ -9,7 +9,7 @@ struct Disc {
   double radius;  ///< [m]
 };
 
-/// Position of the cone's range of one coordinate relative to that of the medium.
+/// Position of a light cone's range of one coordinate relative to the medium's range.
 struct Sides {
   bool inside = true, below = true, above = true;
 
@@ -23,12 +23,12 @@ struct Sides {
 
 }  // namespace
 
-std::vector<std::size_t> sources_at_side_faces(Scene const& scene, DotPattern const& sources) {
+std::vector<std::size_t> sources_at_side_faces(Scene const& scene, RenderPlan const& plan, DotPattern const& sources) {
   std::vector<std::size_t> found;
   if (std::holds_alternative<NoMedium<double>>(scene.medium.view)) return found;
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   // Enlarge the pupil by a tenth for the smoothed edge of the stop.
-  double const way = scene.setup.z_b(), pupil = 1.1 * scene.imaging.entrance_pupil / 2 + scene.pupil_margin;
+  double const way = scene.setup.z_b(), pupil = 1.1 * scene.imaging.entrance_pupil / 2 + plan.pupil_margin;
   for (std::size_t i = 0; i < sources.centre.size(); ++i) {
     // A cone is widest and farthest out at one of its ends.
     Sides along_x, along_y;

@@ -11,24 +11,20 @@ namespace gladstone {
 struct Setup;
 struct Scene;
 struct MemoryRequirement;
-struct Rendering;
-class Renderer;
-enum class RenderImages;
-enum class RenderTheory;
 
 /// Kind of light sources of a scene: dots of a target, or particles.
 struct SourceKind {
   char const* one;         ///< name of a source in messages
   char const* many;        ///< name of several sources
-  char const* seed_table;  ///< table of a setup that contains the seed of their positions
-  /// Printed on a target, behind the medium and evenly lit, so that each one has an image. Otherwise within the medium,
-  /// in a laser sheet, which lights some of them.
+  char const* seed_table;  ///< table of a setup that contains the seed of the sources' positions
+  /// true: sources printed on a target behind the medium, evenly lit, so that each one has an image; false: sources
+  /// within the medium, of which a laser sheet lights some
   bool on_target;
-  bool in_photons;  ///< their light is counted in photons, which limits the exposure
+  bool in_photons;  ///< the light of the sources is counted in photons, which limits the exposure
 
-  /// Returns the memory that they require, and what is read with them.
+  /// Returns the memory that the sources and the files read with them require.
   std::vector<MemoryRequirement> (*memory)(Setup const& setup);
-  /// Adds them to a scene whose camera has been built. @throws DataError
+  /// Adds the sources to a scene whose camera has been built. @throws DataError
   void (*add)(Scene& scene);
   std::size_t (*count)(Scene const& scene);
   /// Returns the position of a source in a frame [m].
@@ -39,8 +35,6 @@ struct SourceKind {
   /// the light of a point is divided among many images, all particles remain.
   /// @return number of sources that remain
   std::size_t (*retain)(Scene& scene, std::function<bool(Vec2d pixel)> const& near);
-  /// Renders them by a renderer that supports the scene.
-  Rendering (*render)(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory);
 };
 
 extern SourceKind const dot_sources, particle_sources;

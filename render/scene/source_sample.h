@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-/// Returns the indices of the scene's sources in view; if none is in view, that of the first source.
+/// Returns the indices of the scene's sources in view; if none is in view, the index of the first source.
 std::vector<std::size_t> sources_in_view(Scene const& scene);
 
 /// Selects `count` sources spread evenly over the list. Random dots are in random order, regular ones row by row.

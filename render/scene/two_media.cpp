@@ -34,14 +34,14 @@ std::vector<Vec2d> displacements(GroundTruth const& first, GroundTruth const& se
 /// Estimates the standard error of a displacement, rms over a sample of particles and both components [px]; NaN:
 /// unknown. Particles are traced with equal light, since the scattering of the sampled particles is not needed and
 /// their indices do not match those of scene.mie.
-double standard_error(Renderer& renderer, Scene const& scene, Particles const& particles) {
+double standard_error(Renderer& renderer, Scene const& scene, RenderPlan const& plan, Particles const& particles) {
   Particles const some = some_of(particles);
   std::array<std::vector<Vec2d>, keys> found;
   for (std::size_t key = 0; key < keys; ++key) {
     Scene keyed = scene;
     keyed.setup.render.seed += 7919 * (key + 1);
     auto const trace = [&](Scene const& one) {
-      return renderer.render_particles(one, some, ParticleLight::equal, RenderImages::no).truth;
+      return renderer.render_particles(one, plan, some, ParticleLight::equal, RenderImages::no).truth;
     };
     found[key] = displacements(trace(select_first_pulse(keyed)), trace(select_second_pulse(keyed)));
   }
@@ -74,15 +74,15 @@ Scene select_second_pulse(Scene const& scene) {
   return second;
 }
 
-Rendering render_in_two_media(Renderer& renderer, Scene const& scene, Particles const& particles, ParticleLight light,
-                              RenderImages images) {
+Rendering render_in_two_media(Renderer& renderer, Scene const& scene, RenderPlan const& plan,
+                              Particles const& particles, ParticleLight light, RenderImages images) {
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
-  Rendering all = renderer.render_particles(select_first_pulse(scene), particles, light, lit);
-  Rendering const later = renderer.render_particles(select_second_pulse(scene), particles, light, lit);
+  Rendering all = renderer.render_particles(select_first_pulse(scene), plan, particles, light, lit);
+  Rendering const later = renderer.render_particles(select_second_pulse(scene), plan, particles, light, lit);
   GroundTruth& truth = all.truth;
   truth.displacement_px = displacements(truth, later.truth);
   truth.displacement_std_px = later.truth.displacement_std_px;
-  double const error = lit == RenderImages::no ? not_a_number : standard_error(renderer, scene, particles);
+  double const error = lit == RenderImages::no ? not_a_number : standard_error(renderer, scene, plan, particles);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     truth.flux[i].y = later.truth.flux[i].y;
     truth.rays[i][1] = later.truth.rays[i][1];

@@ -18,7 +18,7 @@ Scene select_second_pulse(Scene const& scene);
 /// The standard error is estimated from the scatter of up to 256 particles over four random keys, and is the same for
 /// all particles. It is not estimated (NaN) if no images are rendered.
 /// @pre scene.second_medium
-Rendering render_in_two_media(Renderer& renderer, Scene const& scene, Particles const& particles, ParticleLight light,
-                              RenderImages images);
+Rendering render_in_two_media(Renderer& renderer, Scene const& scene, RenderPlan const& plan,
+                              Particles const& particles, ParticleLight light, RenderImages images);
 
 }  // namespace gladstone

@@ -51,7 +51,7 @@ BackgroundSetup read_background(SetupTable table, double full_well_e) {
 
 CameraSetup read_camera_setup(SetupTable table) {
   CameraSetup setup;
-  if (table.has("name")) table.text("name", "");  // name of the camera's folder; used if there are several
+  if (table.has("name")) table.text("name", "");  // used only if there are several cameras, as name of a folder
   auto const pixels = table.integers("pixels", {setup.columns, setup.rows}, 2, 2, 1, 1000000);
   if (pixels.size() == 2) {
     setup.columns = static_cast<int>(pixels[0]);

@@ -66,7 +66,7 @@ class PixelBlock {
     PixelDetector const detector = detector_;
     if (detector.columns > 0) {
       for (std::size_t i = 0; i < count_; ++i) charge_[i] = detector.mean_charge(light[i], first_ + i, pattern(i));
-    } else {  // the same without the background
+    } else {  // loop for sensors without stray light
       for (std::size_t i = 0; i < count_; ++i) charge_[i] = detector.with_dark_charge(light[i], 0, pattern(i));
     }
     if (detector.shot_noise) draw_electrons();
@@ -164,7 +164,7 @@ class PixelBlock {
   PixelDetector const& detector_;
   std::size_t first_, count_;
   Numbers shot_, read_, charge_, quantile_, expanded_;
-  Numbers mean_, share_;  // of pixels with few electrons, in the order of selected_
+  Numbers mean_, share_;  // data of pixels with few electrons, in the order of selected_
   std::array<std::uint16_t, size> selected_;
   std::array<PixelPattern, patterned ? size : 1> pattern_;
 };

@@ -27,7 +27,8 @@ class Detector {
   /// background charge of any pixel.
   static double auto_exposure(CameraSetup const& camera, double brightest_light);
 
-  /// Returns offset + electrons * full scale / full well: no background, noise, rounding or saturation [grey levels].
+  /// Returns the grey level of light alone, offset + electrons * full scale / full well, without background, noise,
+  /// rounding or saturation.
   double ideal_level(double light) const { return pixel_.ideal(light); }
   Image<double> ideal(Image<double> const& light) const;
 

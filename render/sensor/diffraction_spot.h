@@ -51,7 +51,7 @@ struct GaussianSpot {
     constexpr int rows = 3, edges = 4 * rows;
     using Four = Lanes<T, 4>;
     Four const scale = Four::all(T(1) / sigma);
-    T integral[edges + 1];  // preceded by that of the edge before
+    T integral[edges + 1];  // integral at the preceding edge, then at the edges evaluated together
     // Evaluate twelve pixel edges at a time; pixel i is bounded by edges i and i + 1.
     for (int edge = 0; edge <= width; edge += edges) {
       Four value[rows];
@@ -65,12 +65,6 @@ struct GaussianSpot {
       int const begin = edge > 0 ? 0 : 1, end = width - edge < edges ? width - edge : edges - 1;
       for (int i = begin; i <= end; ++i) out[edge + i - 1] = integral[i + 1] - integral[i];
     }
-  }
-  /// Returns the integral of the PSF from its centre to edge `edge` of a footprint that begins at pixel `first`, with
-  /// the same operations as shares(): the share of pixel first + i is edge_integral(i + 1) - edge_integral(i).
-  GLADSTONE_HD T edge_integral(T p, int first, int edge) const {
-    int const within = edge % 8;
-    return edge_value((T(first + (edge - within)) - p + (T(within) - T(0.5))) * (T(1) / sigma));
   }
   /// Computes the shares and their Taylor coefficients with respect to p, up to the given order: the derivative of
   /// order k over k!.
@@ -89,7 +83,7 @@ struct GaussianSpot {
   }
 
   /// Replaces the position t of each pixel edge, in standard deviations from the centre of the PSF, by the integral of
-  /// the normal distribution from the centre to it. A pixel's share is the difference between its two edges.
+  /// the normal distribution from the centre to the edge. A pixel's share is the difference between its two edges.
   template <int N, int K>
   [[gnu::always_inline]] GLADSTONE_HD static void edge_values(Lanes<T, N> (&t)[K]) {
     for (auto& row : t) row = row * Lanes<T, N>::all(T(0.70710678118654752440));
@@ -125,7 +119,7 @@ struct GaussianSpot {
 class AiryTable {
  public:
   struct View {
-    double const* shares = nullptr;  ///< [sub_y][sub_x][row][column]
+    double const* shares = nullptr;  ///< shares of the pixels, [sub_y][sub_x][row][column]
     int subdivisions = 0;            ///< table steps per pixel; subdivisions + 1 positions per axis
     int half_width = 0;              ///< half width of the footprint, without its middle pixel [px]
 

@@ -33,12 +33,12 @@ struct PixelDetector {
   double dark_current_e = 0;
   double read_noise_e = 0;
   std::uint64_t seed = 0;
-  bool by_frame = false;        ///< frames of a sequence: the seeds of both frames differ, their streams do not
+  bool by_frame = false;        ///< frames of a sequence: both frames have the same random stream, but different seeds
   std::uint64_t flow_seed = 0;  ///< seed of frame B, if by_frame
   // stray light, see BackgroundSetup
   int columns = 0, rows = 0;        ///< size of the sensor [px]; 0: no stray light
   double background_e = 0;          ///< charge at the image centre [e]
-  double across_e = 0, down_e = 0;  ///< increase from the first to the last column, row [e]
+  double across_e = 0, down_e = 0;  ///< increase of the background over all columns, rows [e]
   double const* glare_e = nullptr;  ///< charge of the glare in each pixel [e]; null: none
   // fixed pattern, see NoiseSetup
   bool patterned = false;

@@ -34,8 +34,8 @@ class FrameNoise {
   /// Returns the random bits of a pixel's shot noise, and of its read noise.
   GLADSTONE_HD std::uint64_t shot(std::uint64_t pixel) const { return mix64(state(pixel)); }
   GLADSTONE_HD std::uint64_t read(std::uint64_t pixel) const { return mix64(state(pixel) + increment); }
-  /// Returns the number that is mixed to shot(pixel). That of read(pixel) is larger by one increment, that of the next
-  /// pixel by two.
+  /// Returns the number from which shot(pixel) is mixed. The number for read(pixel) is larger by one increment, and the
+  /// number for shot() of the next pixel by two.
   GLADSTONE_HD std::uint64_t state(std::uint64_t pixel) const { return start_ + (2 * pixel + 1) * increment; }
 
  private:
@@ -48,7 +48,7 @@ GLADSTONE_HD inline double to_open_unit(std::uint64_t bits) {
   return from_bits(bits >> 12 | 0x3ff0000000000000ULL) - (1 - 0x1p-53);
 }
 
-/// Evaluates a polynomial by Horner's scheme. @param coefficient  starts with the constant one
+/// Evaluates a polynomial by Horner's scheme. @param coefficient  coefficients, the constant term first
 template <int Count>
 GLADSTONE_HD inline double evaluate_polynomial(double const (&coefficient)[Count], double x) {
   double value = coefficient[Count - 1];
@@ -71,13 +71,15 @@ GLADSTONE_HD inline double fast_logarithm(double t) {
 
 /// Standard normal quantile. The relative error is 1e-7.
 struct NormalQuantile {
-  /// The central part, which contains all but 0.1 % of the probability, ends where 4 u (1 - u) is exp(-6.25).
+  /// Returns true in the central part of the distribution, which ends where 4 u (1 - u) is exp(-6.25) and contains all
+  /// but 0.1 % of the probability.
   GLADSTONE_HD static bool is_central(double u) {
     double const x = 2 * u - 1;
     return 1 - x * x >= 0.00193045413622771;
   }
-  /// x = 2 u - 1 times a polynomial of -ln(1 - x^2) (Giles, GPU Computing Gems Jade Edition (2011) 109), here the
-  /// minimax polynomial for -ln(1 - x^2) up to 6.25. @pre is_central(u); otherwise finite, but inaccurate
+  /// Returns the quantile in the central part: x = 2 u - 1 times a polynomial of -ln(1 - x^2) (Giles, GPU Computing
+  /// Gems Jade Edition (2011) 109), here the minimax polynomial for -ln(1 - x^2) up to 6.25. @pre is_central(u);
+  /// otherwise finite, but inaccurate
   GLADSTONE_HD static double central(double u) {
     constexpr double series[] = {1.2533140442,       0.328120019652,    0.0163162573982,    -0.00326817411208,
                                  -0.000213936492645, 8.20877731452e-05, -6.60807000049e-07, -1.59112339415e-06,
@@ -85,7 +87,8 @@ struct NormalQuantile {
     double const x = 2 * u - 1;
     return x * evaluate_polynomial(series, -fast_logarithm(1 - x * x));
   }
-  /// Rational functions of Wichura, Appl. Stat. 37 (1988) 477, algorithm AS 241, PPND7.
+  /// Returns the quantile in a tail by the rational functions of Wichura, Appl. Stat. 37 (1988) 477, algorithm AS 241,
+  /// PPND7.
   /// @pre !is_central(u), 0 < u < 1
   GLADSTONE_HD static double tail(double u) {
     using std::log;
@@ -106,14 +109,14 @@ struct NormalQuantile {
   GLADSTONE_HD double operator()(double u) const { return is_central(u) ? central(u) : tail(u); }
 };
 
-/// Poisson quantile.
+/// Quantile of the Poisson distribution.
 struct PoissonQuantile {
-  /// Mean from which the expansion is used.
+  /// Smallest mean for which the quantile is computed by expanded(), instead of adding up probabilities.
   static constexpr double least_expanded = 16;
 
-  /// Rounds the first four terms of an expansion of the quantile down (Giles, ACM Trans. Math. Softw. 42 (2016) 7,
-  /// algorithm 955, Eq. 6). The cumulative probabilities have an error below 2e-5 for a mean of 16, which decreases
-  /// with the square of the mean.
+  /// Returns the quantile by the first four terms of an expansion, rounded down (Giles, ACM Trans. Math. Softw. 42
+  /// (2016) 7, algorithm 955, Eq. 6). The cumulative probabilities have an error below 2e-5 for a mean of 16, which
+  /// decreases with the square of the mean.
   /// @param z  normal quantile of the probability  @pre mean >= least_expanded
   GLADSTONE_HD static double expanded(double mean, double z) {
     using std::floor;
@@ -136,7 +139,7 @@ struct PoissonQuantile {
     for (int k = 0; k < 5; ++k) value *= value;
     return value;
   }
-  /// Adds up the probabilities until they exceed u. @pre 0 <= mean < least_expanded
+  /// Returns the quantile by adding up the probabilities until they exceed u. @pre 0 <= mean < least_expanded
   GLADSTONE_HD static double summed(double mean, double u) {
     double share = probability_of_none(mean), sum = share;
     int k = 0;

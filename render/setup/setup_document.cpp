@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "render/base/nearest_name.h"
-#include "render/files/text_file.h"
+#include "render/base/text.h"
 #include "render/setup/setup_state.h"
 
 namespace gladstone {
@@ -71,7 +71,8 @@ struct UnreadKey {
   SetupMember const* member;
 };
 
-/// Collects the keys below a table that were not read, except those of excused tables.
+/// Collects the keys below a table that were not read; skips tables whose unread keys are not reported
+/// (SetupRecord::excused).
 void collect_unread(SetupNode const& node, SetupRecord const& record, std::vector<std::string>& path,
                     std::vector<UnreadKey>& unread) {
   if (record.excused) return;
@@ -201,22 +202,6 @@ SetupDocument::SetupDocument(std::unique_ptr<State> state) : state_(std::move(st
 SetupDocument::SetupDocument(SetupDocument&&) noexcept = default;
 SetupDocument& SetupDocument::operator=(SetupDocument&&) noexcept = default;
 SetupDocument::~SetupDocument() = default;
-
-SetupDocument SetupDocument::from_file(std::string const& path) {
-  std::string text;
-  try {
-    text = read_text_file(path, "a setup file", most_setup_bytes);
-  } catch (DataError const& error) {
-    throw SetupError({{path, error.message(), "", error.code()}});
-  }
-  auto const folder = std::filesystem::absolute(path).parent_path();
-  SetupDocument document = from_text(text, path, folder.string());
-  if (document.empty()) {
-    throw SetupError({{path, "is empty (no key is set); gladstone render --help shows a setup to begin with", "",
-                       ErrorCode::syntax}});
-  }
-  return document;
-}
 
 SetupDocument SetupDocument::from_text(std::string_view text, std::string const& name, std::string const& folder) {
   auto state = std::make_unique<State>();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "render/base/error.h"
 
@@ -101,7 +102,7 @@ std::size_t end_of_quotes(std::string_view text, std::size_t at) {
 /// Returns the first location where a key has more parts, or brackets are nested deeper, than most_setup_depth. The
 /// TOML library and the code that processes its result recurse once per level.
 std::optional<SetupPlace> too_deep(std::string_view text) {
-  std::size_t dots = 0, brackets = 0;  // dots: since the last separator of keys and values
+  std::size_t dots = 0, brackets = 0;  // number of dots in the current key; depth of open brackets
   std::size_t line = 1, line_start = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     char const c = text[i];

@@ -12,16 +12,16 @@ namespace gladstone {
 struct SetupRecord {
   struct Entry {
     std::string key;
-    bool read = false;               ///< value requested, not only its presence
-    bool resolved = false;           ///< `value` is final, e.g. the value computed for "auto"
+    bool read = false;               ///< true: the value was requested, not only its existence
+    bool resolved = false;           ///< true: `value` is final, e.g. computed for "auto"
     std::string value;               ///< TOML text of the value used; empty for tables and absent optional keys
     std::deque<SetupRecord> tables;  ///< records of sub-tables: one for a table, several for an array of tables
-    bool array = false;              ///< `tables` is an array of tables
+    bool array = false;              ///< true: `tables` is an array of tables
   };
 
   std::deque<Entry> entries;  ///< a deque, so that references to entries remain valid
-  bool present = false;       ///< the table exists in the setup
-  bool excused = false;       ///< unread keys of this table are not reported
+  bool present = false;       ///< true: the table exists in the setup
+  bool excused = false;       ///< true: unread keys of this table are not reported
 
   Entry& entry(std::string const& key);
   Entry const* find(std::string const& key) const;

@@ -20,8 +20,6 @@ struct SetupNode;
 /// each, given or default. The modules read their own tables through SetupTable.
 class SetupDocument {
  public:
-  /// Parses a setup file. @throws SetupError if it does not exist, is unreadable, empty or not TOML
-  static SetupDocument from_file(std::string const& path);
   /// Parses text.
   /// @param name    name of the text in messages
   /// @param folder  directory to which relative file names refer
@@ -64,7 +62,7 @@ class SetupDocument {
 
   /// Returns the absolute names of the files read by required_path() and path_list().
   std::vector<std::string> file_names() const;
-  /// Returns the keys of these files as paths from the root; "[2]" for an element of an array.
+  /// Returns the keys of file_names() as paths from the root; "[2]" for an element of an array.
   std::vector<std::vector<std::string>> file_keys() const;
   /// Declares the texts at these keys to be file names and makes them absolute, as reading the setup would. Replaces
   /// the list of file_names(); keys that are absent or not texts are skipped.
@@ -125,7 +123,7 @@ class SetupTable {
   /// @param unit      size of the key's unit in SI
   /// @param range     allowed range in the key's own unit
   double quantity(std::string const& key, double fallback, double unit, Range range = Range::any());
-  /// Reads an array of two or three numbers and converts it to SI, as quantity().
+  /// Reads an array of two or three numbers and converts it to SI, like quantity().
   Vec2d quantities(std::string const& key, Vec2d fallback, double unit, Range range = Range::any());
   Vec3d quantities(std::string const& key, Vec3d fallback, double unit, Range range = Range::any());
   std::optional<double> optional_number(std::string const& key, Range range = Range::any());
@@ -161,9 +159,10 @@ class SetupTable {
     return fallback;
   }
   std::string required_word(std::string const& key, std::vector<std::string> const& words);
-  /// Reads a file name and makes it absolute, relative to the directory of the file in which it is written.
+  /// Reads a file name and makes it absolute; it is relative to the directory of the file in which it is written.
   std::string required_path(std::string const& key);
-  /// Reads an array of at least so many file names, likewise made absolute; empty if the key is absent.
+  /// Reads an array of at least `at_least` file names and makes them absolute like required_path(); empty if the key is
+  /// absent.
   std::vector<std::string> path_list(std::string const& key, std::size_t at_least = 0);
 
   /// Reads an array of exactly `count` numbers.
@@ -182,7 +181,7 @@ class SetupTable {
   void resolve(std::string const& key, std::vector<double> const& values);
   void resolve(std::string const& key, std::string const& word);
 
-  /// Reads a word, as word(), that determines which other keys the table has. If it is wrong, unread keys of
+  /// Reads a word, like word(), that determines which other keys the table has. If it is wrong, unread keys of
   /// the table are not reported.
   std::string kind_word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);
   /// Suppresses the problems about unread keys of this table, since their meaning depends on a key that was wrong.

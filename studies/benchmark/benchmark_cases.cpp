@@ -132,7 +132,7 @@ DisplacementAt sine_flow(double length_px) {
 
 DisplacementAt random_flow(RandomWaves const& waves, int pixels) {
   struct Wave {
-    Vec2d number, amplitude;  ///< [rad/px], [px]
+    Vec2d number, amplitude;  ///< wave vector [rad/px] and amplitude [px]
     double phase;             ///< [rad]
   };
   constexpr int count = 6, lattice_px = 2;
@@ -197,7 +197,7 @@ double step_width_px(DisplacementField const& field, double height_px, int pixel
     sum[static_cast<std::size_t>(cell)] += 0.5 + dot(field.displacement_px[i], edge.along) / height_px;
     count[static_cast<std::size_t>(cell)] += 1.0;
   }
-  // Mean positions and levels of the intervals that contain vectors, from left to right.
+  // Compute mean positions and levels of the intervals that contain vectors, in ascending order of position.
   std::vector<Vec2d> response;
   for (std::size_t k = 0; k < sum.size(); ++k)
     if (count[k] > 0.0) response.push_back({static_cast<double>(k) + 0.5 - reach, sum[k] / count[k]});

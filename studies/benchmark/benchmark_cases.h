@@ -48,8 +48,9 @@ double step_width_px(DisplacementField const& field, double height_px, int pixel
 struct BenchmarkCase {
   std::string name;
   std::string what;            ///< description for the user
-  ParticleSettings particles;  ///< of synthetic images; for the refracted case, only size, seed and noise apply
-  DisplacementAt flow = {};    ///< empty: images ray-traced through turbulence
+  ParticleSettings particles;  ///< settings of synthetic images; for the refracted case, only size, seed and noise
+                               ///< apply
+  DisplacementAt flow = {};    ///< true displacement; empty: images ray-traced through turbulence
   bool refracted() const { return !flow; }
 };
 
@@ -68,7 +69,7 @@ class RefractedTurbulence {
  public:
   static constexpr int pixels = 512;  ///< image size along either axis
 
-  /// Renders an image pair. @param seed of the random dots @param renderer on any device
+  /// Renders an image pair. @param seed of the random dot pattern @param renderer on any device
   RefractedTurbulence(std::uint64_t seed, Renderer& renderer);
 
   /// Returns 8-bit frames with noise.

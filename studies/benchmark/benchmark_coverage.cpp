@@ -19,7 +19,7 @@ constexpr std::uint64_t first_coverage_seed = 7001;
 
 struct TestedFlow {
   char const* name;
-  DisplacementAt displacement;  ///< empty: refracted turbulence
+  DisplacementAt displacement;  ///< displacement of the case; empty: refracted turbulence
 };
 
 /// Coverages and ratios for one seed.

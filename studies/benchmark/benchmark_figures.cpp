@@ -34,7 +34,7 @@ std::vector<Point> points_of(BenchmarkResult const& result) {
   std::vector<Point> points;
   for (std::string const& name : order) {
     if (!noise.contains(name) || !gain.contains(name)) continue;
-    Point const point{name, gain[name]->score.gain, noise[name]->score.errors.rms_without_gross_px};
+    Point const point{name, gain[name]->score.gain, noise[name]->score.errors["rms_without_gross_px"]};
     if (std::isfinite(point.gain) && std::isfinite(point.rms)) points.push_back(point);
   }
   return points;

@@ -71,9 +71,9 @@ std::optional<TextTable> curve_table(BenchmarkResult const& result) {
     BenchmarkRow const* const quiet = find_row(result, row.estimator, noise_case);
     if (row.of_case != gain_case || !quiet) continue;
     table.rows.push_back({{row.estimator},
-                          fixed(quiet->score.errors.rms_without_gross_px, 4),
+                          fixed(quiet->score.errors["rms_without_gross_px"], 4),
                           fixed(row.score.gain, 4),
-                          fixed(row.score.errors.rms_without_gross_px, 4)});
+                          fixed(row.score.errors["rms_without_gross_px"], 4)});
   }
   std::stable_sort(table.rows.begin(), table.rows.end(),
                    [](auto const& a, auto const& b) { return a[2].number.value_or(0.0) < b[2].number.value_or(0.0); });
@@ -87,12 +87,12 @@ ReportSection error_section(BenchmarkResult const& result) {
       "the border are excluded. Gross error: above 1 px. Gain: the fraction of the displacement that the vectors "
       "follow. Compare rms and gain together: large windows have little noise, but do not resolve fine structures."});
   section.blocks.emplace_back(table_of(result, "rms error, gross errors excluded [px]", [](BenchmarkScore const& s) {
-    return fixed(s.errors.rms_without_gross_px, 4);
+    return fixed(s.errors["rms_without_gross_px"], 4);
   }));
   section.blocks.emplace_back(
       table_of(result, "gross errors, and vectors that are missing or invalid", [](auto const& s) {
-        return TableCell{fmt::format("{} + {} of {}", s.gross, s.vectors - s.errors.count, s.vectors),
-                         static_cast<double>(s.gross + s.vectors - s.errors.count)};
+        std::size_t const gross = s.errors.count("gross"), missing = s.vectors - s.errors.count();
+        return TableCell{fmt::format("{} + {} of {}", gross, missing, s.vectors), static_cast<double>(gross + missing)};
       }));
   section.blocks.emplace_back(table_of(
       result, "gain", [](BenchmarkScore const& s) { return fixed(s.gain, 4); },
@@ -103,8 +103,8 @@ ReportSection error_section(BenchmarkResult const& result) {
       [](CaseRecord const& one) { return one.of.name == step_case; }));
   section.blocks.emplace_back(
       table_of(result, "bias of u / of v, gross errors included [px]", [](BenchmarkScore const& s) {
-        double const largest = std::max(std::abs(s.errors.bias_u_px), std::abs(s.errors.bias_v_px));
-        return TableCell{fmt::format("{:+.4f} / {:+.4f}", s.errors.bias_u_px, s.errors.bias_v_px), largest};
+        double const u = s.errors["bias_u_px"], v = s.errors["bias_v_px"];
+        return TableCell{fmt::format("{:+.4f} / {:+.4f}", u, v), std::max(std::abs(u), std::abs(v))};
       }));
   if (std::optional<TextTable> curve = curve_table(result)) section.blocks.emplace_back(std::move(*curve));
   return section;
@@ -136,8 +136,10 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
   section.blocks.emplace_back(Paragraph{
       "Both components together, gross errors excluded, relative to the truth on the deformed windows: the "
       "displacement that the passes would determine from the true displacements of the dots without noise. The two "
-      "columns after rms(sigma) are relative to the mean over the dots of a window, and to the truth at the position; "
-      "no method includes these differences. The last columns count vectors with gross errors and without sigma."});
+      "columns after rms(sigma) are coverages of errors against other truths: the mean over the dots of a window, and "
+      "the displacement at the position of the vector. No method accounts for the differences between these truths. "
+      "The "
+      "last columns count vectors with gross errors and without sigma."});
   section.blocks.emplace_back(std::move(table));
   if (!result.coverage.empty()) {
     TextTable coverage{fmt::format("Coverage over {} seeds: mean and its standard error", result.seeds),
@@ -170,13 +172,13 @@ std::vector<std::string> summarize_findings(BenchmarkResult const& result) {
       if (!text.empty()) text += ", ";
       BenchmarkScore const& score = row->score;
       // Report gross errors as well, since the rms excludes them.
-      double const gross = static_cast<double>(score.gross) / static_cast<double>(score.errors.count);
-      if (score.errors.count == 0) {
+      double const gross = score.errors["gross_fraction"];
+      if (score.errors.count() == 0) {
         text += fmt::format("no valid vector {}", in_words);
-      } else if (score.gross == score.errors.count) {
+      } else if (gross == 1) {
         text += fmt::format("every vector off by more than {:.0f} px {}", gross_error_px, in_words);
       } else {
-        text += fmt::format("{:.4f} px {}", score.errors.rms_without_gross_px, in_words);
+        text += fmt::format("{:.4f} px {}", score.errors["rms_without_gross_px"], in_words);
         if (gross > 0.01) text += fmt::format(" ({:.0f} % of the vectors are gross errors)", 100.0 * gross);
       }
     };

@@ -63,9 +63,10 @@ struct SeedMean {
 struct CoverageRow {
   std::string method, flow;
   double noise = 0.0;
-  /// Coverage_1 relative to the truths of UncertaintyRow.
+  /// Fraction of the errors within sigma, relative to the truths of UncertaintyRow.
   SeedMean window, deformed_window, total;
-  SeedMean rms_ratio, rms_ratio_deformed_window, rms_ratio_total;  ///< rms_ratio relative to the same truths
+  /// UncertaintyQuality::rms_ratio relative to the same truths
+  SeedMean rms_ratio, rms_ratio_deformed_window, rms_ratio_total;
 };
 
 struct CaseRecord {

@@ -40,14 +40,11 @@ BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> 
   double product = 0.0, signal = 0.0;
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (!mask[i]) continue;
-    if (length(field.displacement_px[i] - truth[i]) > gross_error_px) {
-      ++score.gross;
-      continue;
-    }
+    if (length(field.displacement_px[i] - truth[i]) > gross_error_px) continue;
     product += dot(field.displacement_px[i], truth[i]);
     signal += dot(truth[i], truth[i]);
   }
-  score.gain = product / signal;  // 0/0 is NaN if no vector counts
+  score.gain = product / signal;  // 0/0 is NaN if no vector is counted
   return score;
 }
 
@@ -70,18 +67,11 @@ double median_relative_error(DisplacementField const& field, std::vector<Vec2d> 
 }
 
 std::vector<std::pair<std::string_view, double>> score_measures(BenchmarkScore const& score) {
-  ErrorSummary const& errors = score.errors;
-  return {{"vectors", static_cast<double>(score.vectors)},
-          {"count", static_cast<double>(errors.count)},
-          {"valid_fraction", errors.valid_fraction},
-          {"gross", static_cast<double>(score.gross)},
-          {"bias_u_px", errors.bias_u_px},
-          {"bias_v_px", errors.bias_v_px},
-          {"rms_px", errors.rms_px},
-          {"rms_without_gross_px", errors.rms_without_gross_px},
-          {"p95_px", errors.p95_px},
-          {"gain", score.gain},
-          {"step_width_px", score.step_width_px}};
+  std::vector<std::pair<std::string_view, double>> measures{{"vectors", static_cast<double>(score.vectors)}};
+  auto const errors = score.errors.values(&ErrorMeasure::of_benchmark);
+  measures.insert(measures.end(), errors.begin(), errors.end());
+  measures.insert(measures.end(), {{"gain", score.gain}, {"step_width_px", score.step_width_px}});
+  return measures;
 }
 
 }  // namespace gladstone

@@ -16,11 +16,10 @@ namespace gladstone {
 /// Width of the border in which vectors are ignored, since codes treat it differently [px].
 inline constexpr double benchmark_border_px = 32.0;
 
-/// Agreement of vectors with the true displacement of a case; NaN if no vector counts.
+/// Agreement of vectors with the true displacement of a case; NaN if benchmark_mask() selects no vector.
 struct BenchmarkScore {
   std::size_t vectors = 0;  ///< number of vectors of the file outside of the border
-  ErrorSummary errors{};    ///< of the counted (valid or replaced) vectors; valid_fraction refers to `vectors`
-  std::size_t gross = 0;    ///< number of errors above gross_error_px
+  ErrorSummary errors;      ///< of the counted (valid or replaced) vectors; valid_fraction refers to `vectors`
   /// Regression slope of the vectors on the truth, sum m t / sum t^2 over the vectors without gross error [1].
   double gain = 0.0;
   /// Width of the response to a displacement step [px], see step_width_px(); NaN for all cases but step_case.
@@ -37,8 +36,8 @@ BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> 
 BenchmarkScore score_case(std::string const& of_case, DisplacementField const& field, DisplacementAt const& truth,
                           int columns, int rows);
 
-/// Returns the median difference of the counted vectors from the truth, relative to the median displacement or, if that
-/// is less, half a pixel. NaN without a counted vector.
+/// Returns the median difference of the vectors of benchmark_mask() from the truth, relative to the median displacement
+/// or, if that is less, half a pixel. NaN if there is no such vector.
 double median_relative_error(DisplacementField const& field, std::vector<Vec2d> const& truth);
 
 /// Returns the truth at the positions of the vectors.

@@ -122,7 +122,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
     DetectedConventions const& decisive = common.detected[common.decisive];
     if (decisive.conventions == conventions && conventions.offset_px != 0.0) reading_ += "; " + offset_report(decisive);
     if (common.ambiguous && !common.mistake.found())
-      reading_ += "; another reading fits as well, and the format's own is used";
+      reading_ += "; another interpretation fits as well, and that of the format is used";
     if (std::string mistake = describe_mistake(common); !mistake.empty()) mistakes_.push_back(std::move(mistake));
   }
   std::vector<BenchmarkRow> rows;
@@ -170,7 +170,7 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
     std::size_t const i = common.mistaken[k];
     ProbableMistake const& own = common.detected[i].mistake;
     found += fmt::format("{}{}: {}", found.empty() ? "" : "; ", cases_[i].name,
-                         own.found() ? own.text : "the vectors do not follow the truth in any reading");
+                         own.found() ? own.text : "the vectors do not follow the truth in any interpretation");
   }
   if (common.mistaken.size() > most_named)
     found += fmt::format("; and in {} more", common.mistaken.size() - most_named);

@@ -31,7 +31,7 @@ struct ParticleSettings {
   /// Fraction of the particles of each frame without a partner in the other, replaced by new ones [1].
   double lost = 0.0;
   double flow_light = 1.0;   ///< brightness of frame B relative to frame A, including the background [1]
-  double light_slope = 0.0;  ///< relative increase of that ratio from the left to the right edge [1]
+  double light_slope = 0.0;  ///< relative increase of flow_light across the image, from column 0 to the last column [1]
 };
 
 /// Renders 8-bit images of Gaussian particles integrated over the pixels. Particles are at -d/2 in frame A and +d/2 in

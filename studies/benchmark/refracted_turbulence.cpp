@@ -65,7 +65,7 @@ DisplacementAt RefractedTurbulence::truth() const {
   std::vector<Vec2d> centres(grid.size());
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] = grid.centre(i);
   GroundTruth const points =
-      truth_at_points(prepared_.scene, renderer_, centres, TruthAt::mid_position, RenderTheory::no);
+      truth_at_points(prepared_.scene, prepared_.plan, renderer_, centres, TruthAt::mid_position, RenderTheory::no);
   auto const map = std::make_shared<DensePredictor const>(grid, points.displacement_px, pixels, pixels);
   return [map](Vec2d p) { return map->at(p); };
 }

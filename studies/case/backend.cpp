@@ -68,6 +68,10 @@ Backend open_device(std::string const& wanted) {
   return {std::make_unique<Device>(cpu()), tracking::make_cpu_correlator};
 }
 
+CopiedFrames copy_frames_on_gpu(ImageSamples const& reference, ImageSamples const& flow) {
+  return cuda::copy_frames(reference, flow);
+}
+
 tomography::SartVolumeMaker open_volume_device(std::string const& wanted) {
   if (choose_gpu(wanted)) return cuda::make_volume;
   return tomography::make_host_volume;
@@ -78,6 +82,11 @@ std::unique_ptr<PairBatchRenderer> open_pair_batches(std::vector<OwnedPairModel>
 }
 
 int gpu_count() { return cuda::device_count(); }
+
+bool gpu_is_usable() {
+  static bool const usable = cuda::device_state().usable;  // asking takes a millisecond
+  return usable;
+}
 
 int gpu_of_memory(void const* address) { return cuda::device_of_memory(address); }
 

@@ -7,6 +7,7 @@
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/tomography/sart_volume.h"
+#include "render/base/image_samples.h"
 #include "render/ideal_images/pair_batch.h"
 #include "render/scene/renderer.h"
 
@@ -37,10 +38,16 @@ Backend open_device(std::string const& wanted);
 /// @throws DeviceError if no GPU is usable, DataError if the models cannot be rendered together
 std::unique_ptr<PairBatchRenderer> open_pair_batches(std::vector<OwnedPairModel> const& models);
 
+/// Copies images of equal size that another library stores in the memory of the first GPU.
+/// @throws DeviceError if no GPU is usable
+CopiedFrames copy_frames_on_gpu(ImageSamples const& reference, ImageSamples const& flow);
+
 /// Opens a device for tomographic reconstructions, like open_device().
 tomography::SartVolumeMaker open_volume_device(std::string const& wanted);
 
-/// Returns the number of usable GPUs.
+/// Returns the number of GPUs of this process.
 int gpu_count();
+/// Returns whether the first GPU is usable.
+bool gpu_is_usable();
 
 }  // namespace gladstone

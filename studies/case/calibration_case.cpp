@@ -14,9 +14,11 @@
 #include "render/files/output_file.h"
 #include "render/method.h"
 #include "render/planning.h"
+#include "render/render.h"
 #include "render/scene/calibration_planes.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_json.h"
 
 namespace gladstone {
 namespace {
@@ -27,8 +29,7 @@ constexpr double place_tolerance_px = 1e-3;
 constexpr std::size_t dots_traced_again = 64;
 constexpr int dots_for_a_fit = 12;  // minimum number of dots per plane for a homography and its check
 
-/// Builds the scene of a plane. It has no medium, so the step size is irrelevant.
-Scene plane_scene(Setup const& setup, double z) { return with_chosen_step(build_scene(plane_setup(setup, z))); }
+Scene plane_scene(Setup const& setup, double z) { return build_scene(plane_setup(setup, z)); }
 
 /// Selects up to `dots_traced_again` dots, evenly distributed over the pattern.
 DotPattern some_dots(Scene const& scene) {
@@ -39,14 +40,14 @@ DotPattern some_dots(Scene const& scene) {
   return some;
 }
 
-DotPositionError place_error(Scene scene, Renderer& renderer) {
+DotPositionError place_error(Scene const& scene, RenderPlan const& plan, Renderer& renderer) {
   DotPositionError error;
   if (scene.chief_rays_only()) return error;
   DotPattern const some = some_dots(scene);
   auto const places = [&](std::uint64_t repeat) {
     Scene other = scene;
     other.setup.render.seed = repeat_seed(scene.setup.render.seed, repeat);
-    return renderer.render(other, some, RenderImages::no, RenderTheory::no).truth.reference_px;
+    return renderer.render(other, plan, some, RenderImages::no, RenderTheory::no).truth.reference_px;
   };
   std::vector<Vec2d> const one = places(1), two = places(2);
   double squares = 0;
@@ -63,8 +64,8 @@ DotPositionError place_error(Scene scene, Renderer& renderer) {
 
 /// Returns the largest number of rays that the images of some dots require.
 std::uint64_t rays_of_images(Scene const& scene, Renderer& renderer) {
-  Scene const adaptive = with_rays(scene, choose_ray_budget(scene));
-  Rendering const rendering = renderer.render(adaptive, some_dots(scene), RenderImages::yes, RenderTheory::no);
+  Rendering const rendering =
+      renderer.render(scene, plan_rendering(scene), some_dots(scene), RenderImages::yes, RenderTheory::no);
   std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
   return rays.empty() ? 1 : static_cast<std::uint64_t>(*std::max_element(rays.begin(), rays.end()));
 }
@@ -73,12 +74,11 @@ std::uint64_t rays_of_images(Scene const& scene, Renderer& renderer) {
 std::uint64_t rays_for(Setup const& setup, Renderer& renderer) {
   if (setup.render.rays_per_dot) return *setup.render.rays_per_dot;
   auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  Scene scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
-  scene.rays_per_dot = std::max(least_rays, rays_of_images(scene, renderer));
-  while (scene.rays_per_dot < most_rays && place_error(scene, renderer).rms_px > place_tolerance_px) {
-    scene.rays_per_dot *= 2;
-  }
-  return scene.rays_per_dot;
+  Scene const scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
+  RenderPlan plan = plan_step(scene);
+  plan.rays = std::max(least_rays, rays_of_images(scene, renderer));
+  while (plan.rays < most_rays && place_error(scene, plan, renderer).rms_px > place_tolerance_px) plan.rays *= 2;
+  return plan.rays;
 }
 
 /// Warns if the position error of a plane exceeds the tolerance.
@@ -91,9 +91,10 @@ void warn_of_place_errors(RenderedCalibration& rendered) {
   }
   if (worst <= place_tolerance_px) return;
   warn(rendered.warnings,
-       fmt::format("{} rays per dot cause errors of {:.2g} px rms in the positions of the dots on Z = {:.6g} mm (more "
-                   "than {:g} px); increase render.rays_per_dot, or use a larger f-number",
-                   rendered.rays, worst, at / unit::millimetre, place_tolerance_px));
+       {WarningCode::low_accuracy, "render.rays_per_dot",
+        fmt::format("{} rays per dot cause errors of {:.2g} px rms in the positions of the dots on Z = {:.6g} mm (more "
+                    "than {:g} px); increase render.rays_per_dot, or use a larger f-number",
+                    rendered.rays, worst, at / unit::millimetre, place_tolerance_px)});
 }
 
 /// Returns the camera with an independent noise seed for each frame.
@@ -108,29 +109,30 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
   auto const start = std::chrono::steady_clock::now();
   Setup const& setup = loaded.setup;
   RenderedCalibration rendered;
-  for (auto const& text : loaded.warnings) warn(rendered.warnings, text);
+  warn(rendered.warnings, loaded.warnings);
   rendered.rays = rays_for(setup, renderer);
   double brightest = 0;
   for (double const z : setup.planes) {
     RenderedPlane plane;
     plane.z = z;
     plane.scene = plane_scene(setup, z);
-    plane.scene.rays_per_dot = rendered.rays;
+    RenderPlan plan = plan_step(plane.scene);
+    plan.rays = rendered.rays;
     auto const in_view = std::count_if(plane.scene.dots.centre.begin(), plane.scene.dots.centre.end(),
                                        [&](Vec2d centre) { return plane.scene.in_view(centre); });
     if (in_view < dots_for_a_fit) {
-      warn(rendered.warnings,
-           fmt::format("calibration: only {} dots of the plane Z = {:.6g} mm are in view ({} are required); change the "
-                       "position of the camera, or calibration.spacing_mm and extent_mm",
-                       in_view, z / unit::millimetre, dots_for_a_fit));
+      warn(rendered.warnings, {WarningCode::out_of_view, "calibration",
+                               fmt::format("only {} dots of the plane Z = {:.6g} mm are in view ({} are required); "
+                                           "change the position of the camera, or calibration.spacing_mm and extent_mm",
+                                           in_view, z / unit::millimetre, dots_for_a_fit)});
     }
-    Rendering traced = renderer.render(plane.scene, plane.scene.dots, RenderImages::yes, RenderTheory::no);
+    Rendering traced = render(plane.scene, plan, renderer, RenderImages::yes, RenderTheory::no);
+    warn_of_unseen(rendered.warnings, plane.scene, traced,
+                   fmt::format(" of the plane Z = {:.6g} mm", z / unit::millimetre));
     plane.light = std::move(traced.light.reference);
     plane.truth = std::move(traced.truth);
     plane.statuses = traced.statuses;
-    warn_of_unseen(rendered.warnings, plane.scene, plane.truth, 0,
-                   fmt::format(" of the plane Z = {:.6g} mm", z / unit::millimetre));
-    plane.place_error = place_error(plane.scene, renderer);
+    plane.place_error = place_error(plane.scene, plan, renderer);
     rendered.device = traced.device.empty() ? renderer.device() : traced.device;
     brightest = std::max(brightest, *std::max_element(plane.light.begin(), plane.light.end()));
     rendered.planes.push_back(std::move(plane));
@@ -164,7 +166,7 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
   std::string const resolved = loaded.document.resolved();
   auto const place = [&folder](std::string const& name) { return (std::filesystem::path(folder) / name).string(); };
   FileOrigin origin{"gladstone calibration truth", 1, resolved, loaded.setup.render.seed, rendered.device};
-  std::vector<std::string> warnings = rendered.warnings;
+  Warnings warnings = rendered.warnings;
   nlohmann::json planes = nlohmann::json::array();
   std::size_t dots = 0, all_saturated = 0;
   for (std::size_t i = 0; i < rendered.planes.size(); ++i) {
@@ -189,8 +191,9 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
   }
   if (all_saturated > 0) {
     warn(warnings,
-         fmt::format("{} pixels are saturated, which shifts the centroids of their dots; reduce camera.exposure",
-                     all_saturated));
+         {WarningCode::exposure, "camera.exposure",
+          fmt::format("{} pixels are saturated, which shifts the centroids of their dots; reduce camera.exposure",
+                      all_saturated)});
   }
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
@@ -203,7 +206,8 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
                          {"exposure", rendered.exposure_e},
                          {"method", to_string(RenderMethod::rays)},
                          {"device", rendered.device},
-                         {"warnings", warnings},
+                         {"warnings", to_strings(warnings)},
+                         {"warning_records", warnings},
                          {"seconds_render", rendered.seconds}};
   OutputFile::write_text(place(case_file::summary), json_text(summary) + "\n");
   return summary;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/case.h"
 
@@ -12,7 +13,7 @@ namespace gladstone {
 /// Monte Carlo error of the dot images' positions. Some dots are traced twice with independent random numbers; the
 /// difference of two independent positions is sqrt(2) times the error of either.
 struct DotPositionError {
-  std::size_t dots = 0;   ///< number of dots that were traced twice and seen
+  std::size_t dots = 0;   ///< number of dots traced twice and seen in the image
   double rms_px = 0;      ///< rms over dots and components [px]; NaN if none was seen
   double largest_px = 0;  ///< largest error of a component [px]
 };
@@ -30,7 +31,7 @@ struct RenderedPlane {
 /// A calibration rendered in memory.
 struct RenderedCalibration {
   std::vector<RenderedPlane> planes;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   double exposure_e = 0;   ///< electrons in a fully lit pixel, equal for all planes [e]
   std::uint64_t rays = 0;  ///< rays per dot
   std::string device;

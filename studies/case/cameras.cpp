@@ -114,7 +114,7 @@ void give_own_noise(SetupDocument& document, std::size_t index) {
   document.set({"camera", "noise", "seed"}, own);
 }
 
-/// Removes the camera distances of [geometry], which apply to cameras without a pose only.
+/// Removes the camera distances of [geometry], which apply only to cameras without a pose.
 void leave_place_to_others(SetupDocument& document) {
   SetupNode const* const found = document.find({"geometry"});
   if (!found || found->kind != Kind::table) return;

@@ -1,7 +1,6 @@
 #include "studies/case/case.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -13,13 +12,16 @@
 #include "render/planning.h"
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/case_warnings.h"
+#include "studies/case/correlation_setup.h"
 #include "studies/case/light_exposure.h"
 #include "studies/case/sequence_pair.h"
 #include "studies/case/uncertain_inputs.h"
 #include "studies/case/usual_values.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -82,35 +84,35 @@ void cross_check_method(CaseSetup& loaded) {
 }
 
 /// Warns of a field whose size or position does not fit the view, or that ends within it without decaying to ambient.
-void warn_of_field(Scene const& scene, std::vector<std::string>& warnings) {
+void warn_of_field(Scene const& scene, Warnings& warnings) {
   if (scene.setup.medium.field.kind == FieldKind::none || !scene.setup.experiment().measures_density) return;
   Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
-  for (std::string const& text :
+  for (auto const& warning :
        {field_coverage(box, scene.setup).warning(), side_face_warning(scene.medium, scene.setup)}) {
-    if (!text.empty()) warn(warnings, text);
+    if (warning) warn(warnings, *warning);
   }
 }
 
 /// Warns if the defocus of ideal images is neglected although it is visible, or approximated with a visible error.
-void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
+void warn_of_blur(Scene const& scene, Warnings& warnings) {
   if (resolve_render_method(scene) != RenderMethod::formula) return;
   IdealImages const ideal = *ideal_images(scene);
   double const blur = ideal.largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
   if (scene.setup.has_ideal_particles()) {
     if (blur < 0.5 * spot) return;
     warn(warnings,
-         fmt::format("render.method: ideal images neglect defocus, but particles of this sheet have a blur of up to "
-                     "{:.3g} px in addition to the diffraction image of {:.3g} px; use a thinner sheet, a larger "
-                     "f-number or rays",
-                     blur, spot));
+         {WarningCode::approximated, "render.method",
+          fmt::format("ideal images neglect defocus, but particles of this sheet have a blur of up to {:.3g} px in "
+                      "addition to the diffraction image of {:.3g} px; use a thinner sheet, a larger f-number or rays",
+                      blur, spot)});
     return;
   }
   double const error = ideal.largest_blur_error(scene.particles);
   if (!(error > accurate_blur_error)) return;
-  warn(warnings,
-       fmt::format("render.method: ideal images approximate a blur of up to {:.3g} px by Gaussians, with errors "
-                   "of up to {:.2g} % of the brightest image; use a thinner sheet, a larger f-number or rays",
-                   blur, 100 * error));
+  warn(warnings, {WarningCode::approximated, "render.method",
+                  fmt::format("ideal images approximate a blur of up to {:.3g} px by Gaussians, with errors of up to "
+                              "{:.2g} % of the brightest image; use a thinner sheet, a larger f-number or rays",
+                              blur, 100 * error)});
 }
 
 /// Throws SetupError for the file of a study, in place of one problem for each of its keys.
@@ -163,21 +165,15 @@ ReadTables read_tables(SetupDocument document) {
 
 /// Adds unusual values to the warnings of a setup; logs them if it has problems, which a wrong unit may cause.
 void add_unusual_values(CaseSetup& loaded) {
-  std::vector<std::string> const unusual = unusual_values(loaded.document);
+  Warnings const unusual = unusual_values(loaded.document);
   if (loaded.document.has_problems()) {
-    for (std::string const& text : unusual) spdlog::warn("{}", text);
+    log_warnings(unusual);
   } else {
     loaded.warnings.insert(loaded.warnings.begin(), unusual.begin(), unusual.end());
   }
 }
 
 }  // namespace
-
-SetupDocument read_setup_document(std::string const& path, std::vector<std::string> const& overrides) {
-  SetupDocument document = SetupDocument::from_file(path);
-  for (auto const& assignment : overrides) document.override_key(assignment);
-  return document;
-}
 
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
   return load_case_setup(read_setup_document(path, overrides));
@@ -190,8 +186,9 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     loaded.warnings = cross_check(loaded.setup, root);
     if (first_pair_only) {
       loaded.warnings.push_back(
-          fmt::format("sequence: only its first pair, pair = {}, is considered; gladstone render renders all pairs",
-                      loaded.setup.sequence ? loaded.setup.sequence->pair : 0));
+          {WarningCode::ignored, "sequence",
+           fmt::format("only its first pair, pair = {}, is considered; gladstone render renders all pairs",
+                       loaded.setup.sequence ? loaded.setup.sequence->pair : 0)});
     }
     case_kind(loaded.setup).cross_check(loaded);
     cross_check_method(loaded);
@@ -214,55 +211,54 @@ void check_setup_keys(SetupDocument document) {
 PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   PreparedCase prepared;
   prepared.correlate = loaded.correlate;
-  for (auto const& text : loaded.warnings) warn(prepared.warnings, text);
+  warn(prepared.warnings, loaded.warnings);
   prepared.scene = build_scene(loaded.setup, known.medium);
-  Scene& scene = prepared.scene;
-  for (auto const& text : scene.medium.warnings) warn(prepared.warnings, text);
-  if (scene.second_medium) {
-    for (auto const& text : scene.second_medium->warnings) warn(prepared.warnings, text);
-  }
+  Scene const& scene = prepared.scene;
+  warn(prepared.warnings, scene.medium.warnings);
+  if (scene.second_medium) warn(prepared.warnings, scene.second_medium->warnings);
   warn_of_field(scene, prepared.warnings);  // before rays are traced through the field
-  prepared.step = known.step ? *known.step : choose_step(scene);
-  scene = with_step(std::move(scene), prepared.step);
-  if (prepared.step.change_px >= 1e-4) {
+  RenderPlan const& plan = prepared.plan = known.plan ? *known.plan : plan_rendering(scene, known.step);
+  if (IntegrationStep const& step = plan.step_estimate; step.change_px >= 1e-4) {
     warn(prepared.warnings,
-         fmt::format("step_mm = {:.4g}: halving it would still shift dot {} by {:.2g} px; use a smaller medium.step_mm",
-                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
+         {WarningCode::low_accuracy, "medium.step_mm",
+          fmt::format("halving the step of {:.4g} mm would still shift dot {} by {:.2g} px; use a smaller one",
+                      step.step_mm, step.limiting_dot, step.change_px)});
   }
   case_kind(scene.setup).warn_of_view(scene, prepared.warnings);
   warn_of_blur(scene, prepared.warnings);
-  prepared.rays = known.rays ? *known.rays : choose_ray_budget(scene);
-  scene = with_rays(std::move(scene), prepared.rays);
-  bool const by_table = resolve_render_method(scene) == RenderMethod::focused_dots;
   if (loaded.setup.medium.field.kind != FieldKind::none && loaded.setup.experiment().measures_density) {
-    prepared.strain = known.strain ? *known.strain : strain_in_view(scene);
+    prepared.strain = known.strain ? *known.strain : strain_in_view(scene, plan);
     if (prepared.strain.largest_px < least_displacement_px) {
       warn(prepared.warnings,
-           fmt::format("no displacement: according to Eq. 9 the field displaces no point in the view by more than "
-                       "{:.2g} px; check quantity, scale, spacing and position of medium.field, or its amplitude",
-                       prepared.strain.largest_px));
+           {WarningCode::unsuitable, "medium.field",
+            fmt::format("no displacement: according to Eq. 9 the field displaces no point in the view by more than "
+                        "{:.2g} px; check quantity, scale, spacing and position of medium.field, or its amplitude",
+                        prepared.strain.largest_px)});
     } else if (prepared.strain.largest_px < measurable_displacement_px) {
       warn(prepared.warnings,
-           fmt::format("displacements are too small to measure: according to Eq. 9 the field displaces no point in the "
-                       "view by more than {:.2g} px (correlation resolves {} px at best); increase geometry.z_d_mm or "
-                       "the focal length, or check quantity, scale and spacing of medium.field",
-                       prepared.strain.largest_px, measurable_displacement_px));
+           {WarningCode::unsuitable, "medium.field",
+            fmt::format("displacements are too small to measure: according to Eq. 9 the field displaces no point in "
+                        "the view by more than {:.2g} px (correlation resolves {} px at best); increase "
+                        "geometry.z_d_mm or the focal length, or check quantity, scale and spacing of medium.field",
+                        prepared.strain.largest_px, measurable_displacement_px)});
     }
     if (prepared.strain.caustic_fraction > 0) {
       warn(prepared.warnings,
-           fmt::format(
-               "caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach the lens "
-               "(the images of dots are folded there); reduce Z_D or the gradients, or exclude these vectors",
-               100 * prepared.strain.caustic_fraction));
+           {WarningCode::unsuitable, "medium.field",
+            fmt::format(
+                "caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach the lens "
+                "(the images of dots are folded there); reduce Z_D or the gradients, or exclude these vectors",
+                100 * prepared.strain.caustic_fraction)});
     }
   }
   SetupTable root = loaded.document.root();
-  root.table("medium").resolve("step_mm", prepared.step.step_mm);
+  root.table("medium").resolve("step_mm", plan.step_estimate.step_mm);
   // "auto" remains if the number of rays differs between sources
-  if ((by_table || prepared.rays.adaptive_criteria) && !loaded.setup.render.rays_per_dot) {
+  bool const by_table = plan.method == RenderMethod::focused_dots;
+  if ((by_table || plan.adaptive_criteria) && !loaded.setup.render.rays_per_dot) {
     root.table("render").resolve("rays_per_dot", std::string("auto"));
   } else {
-    root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));
+    root.table("render").resolve("rays_per_dot", static_cast<long long>(plan.rays));
   }
   if (loaded.setup.experiment().sources.on_target && loaded.setup.target.kind != TargetKind::points) {
     Vec2d const extent = loaded.setup.target_extent();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/correlation/correlation_settings.h"
+#include "render/base/warning.h"
 #include "render/scene/field_map.h"
 #include "render/scene/ray_budget.h"
 #include "render/scene/renderer.h"
@@ -28,7 +29,7 @@ struct CaseSetup {
   SetupDocument document;
   Setup setup;
   CorrelationSettings correlate;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::vector<UncertainInput> uncertain = {};  ///< numbers given with an uncertainty, unless the caller extracted them
   /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
@@ -37,13 +38,10 @@ struct CaseSetup {
   CaseSetup copy() const { return {document.copy(), setup, correlate, warnings, uncertain, input_hashes}; }
 };
 
-/// Reads a setup file and replaces keys by "KEY=VALUE" assignments. @throws SetupError
-SetupDocument read_setup_document(std::string const& path, std::vector<std::string> const& overrides);
-
 /// Reads and checks a setup.
 /// @throws SetupError with all problems
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
-/// @param field  whether the medium has yet to be built, for the check of available memory
+/// @param field  whether the check of available memory includes a medium that is yet to be built
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemory::needed);
 
 /// Checks names, types and ranges of the keys of a setup with one camera, without comparing them with each other or
@@ -51,25 +49,24 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemor
 /// @throws SetupError with all problems
 void check_setup_keys(SetupDocument document);
 
-/// A case ready to render: scene, integration step, ray budget and strain map.
+/// A case ready to render: scene, plan of the rendering and strain map.
 struct PreparedCase {
   Scene scene;
   CorrelationSettings correlate;
-  IntegrationStep step;
-  RayBudget rays;
+  RenderPlan plan;
   StrainMap strain;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
-/// Parts of a PreparedCase that can be reused from another case with the same values; null: compute.
+/// Parts of a PreparedCase that can be reused from another case with the same values; null: to be computed.
 struct ReusableParts {
   BuiltMedium const* medium = nullptr;
   IntegrationStep const* step = nullptr;
-  RayBudget const* rays = nullptr;
+  RenderPlan const* plan = nullptr;  ///< with this step
   StrainMap const* strain = nullptr;
 };
 
-/// Builds the scene and determines step and rays. Resolves every "auto" value of the setup except the exposure and, if
+/// Builds the scene and plans its rendering. Resolves every "auto" value of the setup except the exposure and, if
 /// rays are chosen per dot, render.rays_per_dot.
 PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known = {});
 
@@ -83,13 +80,9 @@ struct RenderedCase {
 /// Returns the announcement of a long rendering: its sources, the expected time and how to shorten it. Empty if it
 /// takes at most 20 s.
 /// @param expected_s  estimate of the wall time [s]; for adaptive ray numbers of dots, of the largest number
-std::string rendering_announcement(Scene const& scene, double expected_s);
+std::string rendering_announcement(Scene const& scene, RenderPlan const& plan, double expected_s);
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
-
-/// Returns the exposure: the camera's own, or the one chosen from the brightest pixel, but at most the electrons
-/// released by the particles' photons (photon_limited_exposure) [e].
-double choose_exposure(Scene const& scene, RenderedLight const& light);
 
 /// Records both frames of a rendering with the camera's noise and quantization.
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered);
@@ -113,9 +106,9 @@ RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
 
 /// Truth of dots at side faces of the medium (side_faces.h) in a rendering by the fast renderer.
 struct SideFaceAccuracy {
-  std::size_t dots = 0;                  ///< number of such dots
-  std::int64_t most_rays = 0;            ///< largest number of rays of one of them
-  double truth_error_px = not_measured;  ///< rms of their standard errors [px]
+  std::size_t dots = 0;                  ///< number of dots at side faces
+  std::int64_t most_rays = 0;            ///< largest number of rays of one of these dots
+  double truth_error_px = not_measured;  ///< rms of the standard errors of the truth of these dots [px]
 };
 
 /// Accuracy of the truth of a rendered case.
@@ -132,8 +125,8 @@ struct CaseOutcome : RenderedOutcome {
   double image_error_levels = not_measured;
   std::optional<TableError> table_error;  ///< error of the deflection table, if the truth was computed with one
   std::string device, reference_sha256, flow_sha256;
-  std::vector<std::string> warnings;  ///< all warnings of the case, those of its preparation first
-  FramePair<std::uint16_t> levels;    ///< grey levels of the frames
+  Warnings warnings;                ///< all warnings of the case, those of its preparation first
+  FramePair<std::uint16_t> levels;  ///< grey levels of the frames
 };
 
 /// Determines accuracy, grey levels and warnings of a rendered case, logs its warnings, and stores the values used for

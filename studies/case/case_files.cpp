@@ -6,6 +6,8 @@
 
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
+#include "render/files/output_destination.h"
+#include "render/scene/setup_document.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/cameras.h"
 #include "studies/case/rendered_sequence_folder.h"
@@ -26,7 +28,7 @@ std::vector<std::string> in_folder(std::string const& folder, Names const& names
 void require_pair(std::string const& folder) {
   std::error_code error;
   if (fs::exists(fs::path(folder) / case_file::reference, error)) return;
-  SetupDocument const setup = SetupDocument::from_file((fs::path(folder) / case_file::setup).string());
+  SetupDocument const setup = read_setup_document((fs::path(folder) / case_file::setup).string());
   if (std::vector<std::string> const names = camera_names(setup); !names.empty()) {
     throw DataError(ErrorCode::undetermined, folder,
                     fmt::format("contains one case for each of its cameras, {}; name one of them: {}",

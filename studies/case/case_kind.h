@@ -2,10 +2,11 @@
 
 #include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/hdf5_file.h"
 #include "render/scene/experiment.h"
 #include "studies/case/peak_locking.h"
@@ -29,19 +30,19 @@ struct CaseKind {
   /// Estimates the number of rays that "auto" chooses for most sources; null: unknown.
   /// @param largest  largest number that may be chosen
   double (*expected_rays)(Setup const& setup, double largest);
-  /// Replaces the sources of every camera's setup by common ones.
+  /// Replaces the sources in the setups of all cameras by common ones.
   /// @param cases  setups to be changed
-  /// @param read   the same setups, read
+  /// @param read   contents of these setups
   void (*share_sources)(std::vector<CameraCase>& cases, std::vector<Setup> const& read);
   /// Renders the case of one camera.
-  /// @param shared   parts of other pairs of a sequence
+  /// @param shared   exposure, images and particles that earlier pairs of the sequence determined
   /// @param entry    receives the numbers for the report, except the folder
   /// @param medium   receives the medium of the case
-  /// @return writer of its files, valid as long as `loaded` and `renderer`
+  /// @return writer of the case's files, valid as long as `loaded` and `renderer`
   CaseWriter (*render)(CaseSetup& loaded, Renderer& renderer, ReusableParts const& known,
                        SharedParts::OfCamera const& shared, RenderedCamera& entry, BuiltMedium& medium);
   /// Warns if no source is in the camera's view, or for unsuitable sources.
-  void (*warn_of_view)(Scene const& scene, std::vector<std::string>& warnings);
+  void (*warn_of_view)(Scene const& scene, Warnings& warnings);
   /// Writes truth.h5.
   void (*write_truth)(std::string const& path, Scene const& scene, Rendering const& rendering,
                       CaseOutcome const& outcome, FileOrigin const& origin);
@@ -57,7 +58,7 @@ inline constexpr std::array all_case_kinds{&bos_case_kind, &piv_case_kind, &cali
 /// Returns the kind of the case that a setup describes.
 CaseKind const& case_kind(Setup const& setup);
 
-/// Throws DataError (wrong_format) unless a setup is that of an experiment.
+/// Throws DataError (wrong_format) unless a setup is of the given experiment.
 /// @param name     name of the setup or its folder
 /// @param refusal  end of the sentence that begins with the name, with the remedy
 void require_experiment(Setup const& setup, Experiment const& needed, std::string const& name,

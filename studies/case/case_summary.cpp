@@ -10,11 +10,12 @@
 #include "studies/case/case_kind.h"
 #include "studies/case/json_text.h"
 #include "studies/case/lens_glasses.h"
+#include "studies/case/warning_json.h"
 
 namespace gladstone {
 namespace {
 
-/// Minimum, median and maximum.
+/// Returns minimum, median and maximum.
 nlohmann::json spread_of(std::vector<std::int64_t> numbers) {
   if (numbers.empty()) return nullptr;
   std::sort(numbers.begin(), numbers.end());
@@ -70,10 +71,10 @@ nlohmann::json side_faces_json(SideFaceAccuracy const& there) {
 
 /// Returns the number of rays of every source; if it is adaptive, the largest.
 nlohmann::json rays_per_source(PreparedCase const& prepared, Rendering const& rendering) {
-  if (rendering.method == RenderMethod::formula) return nullptr;
+  if (rendering.plan.method == RenderMethod::formula) return nullptr;
   std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
-  bool const adaptive = rendering.method == RenderMethod::rays && prepared.rays.adaptive_criteria && !rays.empty();
-  return adaptive ? nlohmann::json(*std::max_element(rays.begin(), rays.end())) : nlohmann::json(prepared.rays.rays);
+  bool const adaptive = rendering.plan.method == RenderMethod::rays && prepared.plan.adaptive_criteria && !rays.empty();
+  return adaptive ? nlohmann::json(*std::max_element(rays.begin(), rays.end())) : nlohmann::json(prepared.plan.rays);
 }
 
 /// Returns the glasses of a prescription; empty for an ideal lens.
@@ -91,11 +92,13 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
   Scene const& scene = prepared.scene;
   Rendering const& rendering = *rendered.rendering;
   TruthAccuracy const& accuracy = outcome.accuracy;
-  bool const formula = rendering.method == RenderMethod::formula;
+  bool const formula = rendering.plan.method == RenderMethod::formula;
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
-      {"step_mm", prepared.step.step_mm},
-      {"step", {{"change_px", prepared.step.change_px}, {"limiting_dot", prepared.step.limiting_dot}}},
+      {"step_mm", prepared.plan.step_estimate.step_mm},
+      {"step",
+       {{"change_px", prepared.plan.step_estimate.change_px},
+        {"limiting_dot", prepared.plan.step_estimate.limiting_dot}}},
       {"rays_per_dot", rays_per_source(prepared, rendering)},
       {"rays_planned", spread_of(traced_only(rendering.truth.rays_planned))},
       {"exposure", rendered.exposure_e},
@@ -122,14 +125,15 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
         {"side_faces", outcome.side_faces ? side_faces_json(*outcome.side_faces) : nlohmann::json(nullptr)}}},
       {"image_error",
        {{"levels", number_or_null(outcome.image_error_levels)}, {"bits", error_bit_depth(scene.setup.camera)}}},
-      {"method", to_string(rendering.method)},
+      {"method", to_string(rendering.plan.method)},
       {"device", outcome.device},
       {"precision", "double"},
       {"rays",
        {{"traced", rendering.rays},
         {"reference", status_counts(rendering.statuses, 0)},
         {"flow", status_counts(rendering.statuses, 1)}}},
-      {"rays_lost_by_surface", formula ? nlohmann::json(nullptr) : losses_json(sample_ray_losses(scene))},
+      {"rays_lost_by_surface",
+       formula ? nlohmann::json(nullptr) : losses_json(sample_ray_losses(scene, prepared.plan))},
       {"lens_glasses", glasses_of_setup(scene.setup.lens)},
       {"pupil_margin_mm", rendered.rendering->pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
@@ -137,7 +141,8 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"reference_sha256", outcome.reference_sha256},
       {"flow_sha256", outcome.flow_sha256},
       {"photons_fully_lit", rendered.exposure_e / scene.setup.camera.noise.quantum_efficiency},
-      {"warnings", outcome.warnings},
+      {"warnings", to_strings(outcome.warnings)},
+      {"warning_records", outcome.warnings},
       {"seconds_render", rendered.seconds},
   };
   summary.update(case_kind(scene.setup).own_summary(scene, rendering.truth, rendered.exposure_e));

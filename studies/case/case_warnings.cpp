@@ -1,7 +1,6 @@
 #include "studies/case/case_warnings.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "render/scene/particle_scene.h"
 #include "render/scene/side_faces.h"
 #include "render/sensor/detector.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -25,9 +25,13 @@ std::int64_t most_rays_of_a_source(GroundTruth const& truth) {
 
 }  // namespace
 
-void warn(std::vector<std::string>& warnings, std::string text) {
-  spdlog::warn("{}", text);
-  warnings.push_back(std::move(text));
+void warn(Warnings& warnings, Warning warning) {
+  log_warning(warning);
+  warnings.push_back(std::move(warning));
+}
+
+void warn(Warnings& warnings, Warnings const& added) {
+  for (Warning const& warning : added) warn(warnings, warning);
 }
 
 std::string describe_error(double error, double resolution, std::string_view unit) {
@@ -36,11 +40,12 @@ std::string describe_error(double error, double resolution, std::string_view uni
   return error < 99.5 ? fmt::format("{:.2g} {}", error, unit) : fmt::format("{:.0f} {}", error, unit);
 }
 
-void warn_of_ray_limit(std::vector<std::string>& warnings, PreparedCase const& prepared, Rendering const& rendering) {
-  if (!prepared.rays.adaptive_criteria || prepared.rays.rays == 1) return;
-  bool const by_table = rendering.method == RenderMethod::focused_dots;  // only the others take as many as required
-  auto const limit =
-      static_cast<std::int64_t>(by_table ? max_rays_per_source(prepared.scene) : largest_ray_number(prepared.scene));
+void warn_of_ray_limit(Warnings& warnings, PreparedCase const& prepared, Rendering const& rendering) {
+  if (!prepared.plan.adaptive_criteria || prepared.plan.rays == 1) return;
+  bool const by_table =
+      rendering.plan.method == RenderMethod::focused_dots;  // only the others take as many as required
+  auto const limit = static_cast<std::int64_t>(by_table ? max_rays_per_source(prepared.scene, prepared.plan)
+                                                        : largest_ray_number(prepared.scene, prepared.plan));
   std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
   std::size_t at_limit = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -49,27 +54,28 @@ void warn_of_ray_limit(std::vector<std::string>& warnings, PreparedCase const& p
   }
   if (at_limit == 0) return;
   warn(warnings,
-       fmt::format(
-           "rays_per_dot = \"auto\": {} of {} sources use the limit of {} rays ({:.2g} s of processor time each, or "
-           "1024 rays) and may miss the goals of {} px and {} grey levels; set a larger render.rays_per_dot if "
-           "this matters",
-           at_limit, rays.size(), limit, source_budget_s, truth_tolerance_px, image_tolerance_levels));
+       {WarningCode::low_accuracy, "render.rays_per_dot",
+        fmt::format(
+            "\"auto\": {} of {} sources use the limit of {} rays ({:.2g} s of processor time each, or 1024 rays) and "
+            "may miss the goals of {} px and {} grey levels; set a larger render.rays_per_dot if this matters",
+            at_limit, rays.size(), limit, source_budget_s, truth_tolerance_px, image_tolerance_levels)});
 }
 
-void warn_of_images(std::vector<std::string>& warnings, CameraSetup const& camera, double error_levels) {
+void warn_of_images(Warnings& warnings, CameraSetup const& camera, double error_levels) {
   if (!(error_levels > image_tolerance_levels)) return;
   warn(warnings,
-       fmt::format("images: the standard error of lit pixels due to the number of rays is {} (the goal is "
-                   "{}); set a larger render.rays_per_dot if this matters",
-                   describe_error(error_levels, 0, levels_unit(error_bit_depth(camera))), image_tolerance_levels));
+       {WarningCode::low_accuracy, "images",
+        fmt::format("the standard error of lit pixels due to the number of rays is {} (the goal is {}); set a larger "
+                    "render.rays_per_dot if this matters",
+                    describe_error(error_levels, 0, levels_unit(error_bit_depth(camera))), image_tolerance_levels)});
 }
 
 std::optional<SideFaceAccuracy> side_face_accuracy(Scene const& scene, Rendering const& rendering) {
-  if (rendering.method != RenderMethod::focused_dots) return std::nullopt;
+  if (rendering.plan.method != RenderMethod::focused_dots) return std::nullopt;
   SideFaceAccuracy there;
   bool seen = false;
   double squares = 0, components = 0;
-  for (std::size_t const dot : sources_at_side_faces(scene, scene.dots)) {
+  for (std::size_t const dot : sources_at_side_faces(scene, rendering.plan, scene.dots)) {
     ++there.dots;
     there.most_rays = std::max(there.most_rays, rendering.truth.rays_planned[dot]);
     seen = seen || scene.in_view(scene.dots.centre[dot]);
@@ -83,26 +89,27 @@ std::optional<SideFaceAccuracy> side_face_accuracy(Scene const& scene, Rendering
   return there;
 }
 
-void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, SideFaceAccuracy const& there) {
+void warn_of_side_faces(Warnings& warnings, Scene const& scene, SideFaceAccuracy const& there) {
   if (!(there.truth_error_px > truth_tolerance_px)) return;
   bool const given = scene.setup.render.rays_per_dot.has_value(), by_brightest = !scene.setup.camera.exposure_e;
   warn(warnings,
-       fmt::format(
-           "render.rays_per_dot: {} dots lie at side faces of the medium, which cut their light cones, and are traced "
-           "ray by ray, with {} rays each, for truth and images. The standard error of their truth is {} rms (the "
-           "goal is {}){}; {}",
-           there.dots, there.most_rays, describe_error(there.truth_error_px, 0, "px"), truth_tolerance_px,
-           by_brightest ? ", and camera.exposure = \"auto\" is chosen from the brightest pixel of such images" : "",
-           given ? "set render.rays_per_dot = \"auto\", which chooses a sufficient number for these dots"
-                 : "increase render.rays_per_dot if this matters"));
+       {WarningCode::low_accuracy, "render.rays_per_dot",
+        fmt::format(
+            "{} dots lie at side faces of the medium, which cut their light cones, and are traced ray by ray, with {} "
+            "rays each, for truth and images. The standard error of their truth is {} rms (the goal is {}){}; {}",
+            there.dots, there.most_rays, describe_error(there.truth_error_px, 0, "px"), truth_tolerance_px,
+            by_brightest ? ", and camera.exposure = \"auto\" is chosen from the brightest pixel of such images" : "",
+            given ? "set render.rays_per_dot = \"auto\", which chooses a sufficient number for these dots"
+                  : "increase render.rays_per_dot if this matters")});
 }
 
-void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
+void warn_of_truth(Warnings& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
                    std::string_view sources) {
   if (accuracy.unknown > 0) {
-    warn(warnings, fmt::format("truth: the standard error of the displacements of {} of {} {} is unknown (a single ray "
-                               "has no scatter); increase render.rays_per_dot to 8 or more",
-                               accuracy.unknown, rendering.truth.size(), sources));
+    warn(warnings, {WarningCode::low_accuracy, "truth",
+                    fmt::format("the standard error of the displacements of {} of {} {} is unknown (a single ray has "
+                                "no scatter); increase render.rays_per_dot to 8 or more",
+                                accuracy.unknown, rendering.truth.size(), sources)});
   }
   if (!(accuracy.rms_px > truth_tolerance_px)) return;
   std::string why;
@@ -117,25 +124,28 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
         accuracy.above_by_rays);
   }
   warn(warnings,
-       fmt::format("truth: the standard error of the displacements is {:.2g} px rms; for {} of {} {} it exceeds {} px, "
-                   "and number {} has the largest, {:.2g} px{}; increase render.rays_per_dot, now {}, if this matters",
-                   accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
-                   accuracy.largest_px, why, most_rays_of_a_source(rendering.truth)));
+       {WarningCode::low_accuracy, "truth",
+        fmt::format("the standard error of the displacements is {:.2g} px rms; for {} of {} {} it exceeds {} px, and "
+                    "number {} has the largest, {:.2g} px{}; increase render.rays_per_dot, now {}, if this matters",
+                    accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px,
+                    accuracy.worst, accuracy.largest_px, why, most_rays_of_a_source(rendering.truth))});
 }
 
-void warn_of_table(std::vector<std::string>& warnings, TableError const& error) {
+void warn_of_table(Warnings& warnings, TableError const& error) {
   if (!(error.excess() > 1)) return;
   warn(warnings,
-       fmt::format(
-           "residual error of the deflection table: {} in the images, {} in the truth, and the goals are {} and {}; "
-           "{}render.method = \"rays\" has no such error, but requires many render.rays_per_dot for less scatter",
-           describe_error(error.image_levels, error.image_resolution_levels, levels_unit(error.bits)),
-           describe_error(error.truth_px, error.truth_resolution_px, "px"), image_tolerance_levels, truth_tolerance_px,
-           error.fineness == 1 ? "render.rays_per_dot = \"auto\" selects a finer table; " : ""));
+       {WarningCode::low_accuracy, "render.method",
+        fmt::format(
+            "residual error of the deflection table: {} in the images, {} in the truth, and the goals are {} and {}; "
+            "{}render.method = \"rays\" has no such error, but requires many render.rays_per_dot for less scatter",
+            describe_error(error.image_levels, error.image_resolution_levels, levels_unit(error.bits)),
+            describe_error(error.truth_px, error.truth_resolution_px, "px"), image_tolerance_levels, truth_tolerance_px,
+            error.fineness == 1 ? "render.rays_per_dot = \"auto\" selects a finer table; " : "")});
 }
 
-std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
-                           double pupil_margin, std::string_view where) {
+std::size_t warn_of_unseen(Warnings& warnings, Scene const& scene, Rendering const& rendering, std::string_view where) {
+  GroundTruth const& truth = rendering.truth;
+  double const pupil_margin = rendering.pupil_margin;
   std::int64_t unseen = 0, in_reference = 0;                     // in one of the frames; in the reference
   std::int64_t rays = std::numeric_limits<std::int64_t>::max();  // smallest number of rays of an unseen dot
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -146,27 +156,32 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
   }
   // unseen particles are those outside the light sheet
   if (unseen == 0 || !scene.setup.experiment().sources.on_target) return static_cast<std::size_t>(unseen);
-  double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
+  double const stop = scene.imaging.entrance_pupil / 2;
+  double const edge = Scene::stop_edge(static_cast<double>(rendering.plan.rays));
+  double const disc = stop * std::sqrt(1 + edge / 2) + rendering.plan.pupil_margin;  // to which rays are sent
   double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
   constexpr double few = 16;  // if 16 passing rays are expected, none passes with a probability of e^-16
   if (!scene.chief_rays_only() && pupil_margin > 0 && passing < few) {
-    warn(warnings, fmt::format("{} of {} dots{} are not imaged in one of the frames, and their truth is nan: some "
-                               "{:.2g} of a dot's {} rays pass the stop, since the medium deflects them by up to "
-                               "{:.3g} mm; use more rays (render.rays_per_dot), or reduce the gradients or Z_D",
-                               unseen, truth.size(), where, passing, rays, pupil_margin / unit::millimetre));
+    warn(warnings, {WarningCode::out_of_view, "target",
+                    fmt::format("{} of {} dots{} are not imaged in one of the frames, and their truth is nan: some "
+                                "{:.2g} of a dot's {} rays pass the stop, since the medium deflects them by up to "
+                                "{:.3g} mm; use more rays (render.rays_per_dot), or reduce the gradients or Z_D",
+                                unseen, truth.size(), where, passing, rays, pupil_margin / unit::millimetre)});
     return static_cast<std::size_t>(unseen);
   }
   if (in_reference > 0) {
     warn(warnings,
-         fmt::format("{} of {} dots{} are not imaged, and their truth is nan: even without the medium, no ray of such "
-                     "a dot ({} or more) passes the lens; these dots are outside the field of view of the lens or "
-                     "vignetted, so reduce the dotted area, move the camera, or use more rays (render.rays_per_dot)",
-                     in_reference, truth.size(), where, rays));
+         {WarningCode::out_of_view, "target",
+          fmt::format("{} of {} dots{} are not imaged, and their truth is nan: even without the medium, no ray of such "
+                      "a dot ({} or more) passes the lens; these dots are outside the field of view of the lens or "
+                      "vignetted, so reduce the dotted area, move the camera, or use more rays (render.rays_per_dot)",
+                      in_reference, truth.size(), where, rays)});
   }
   if (unseen > in_reference) {
-    warn(warnings, fmt::format("{} of {} dots{} are not imaged in one of the frames, and their truth is nan: the "
-                               "medium deflects their rays past the lens; reduce the gradients or Z_D",
-                               unseen - in_reference, truth.size(), where));
+    warn(warnings, {WarningCode::out_of_view, "target",
+                    fmt::format("{} of {} dots{} are not imaged in one of the frames, and their truth is nan: the "
+                                "medium deflects their rays past the lens; reduce the gradients or Z_D",
+                                unseen - in_reference, truth.size(), where)});
   }
   return static_cast<std::size_t>(unseen);
 }
@@ -191,11 +206,12 @@ std::string saturation_cure(CameraSetup const& camera, double light_e) {
 
 }  // namespace
 
-void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& camera, std::size_t in_reference,
-                        std::size_t in_flow, double light_e) {
+void warn_of_saturation(Warnings& warnings, CameraSetup const& camera, std::size_t in_reference, std::size_t in_flow,
+                        double light_e) {
   if (in_reference + in_flow == 0) return;
-  warn(warnings, fmt::format("{} pixels are saturated in reference.tif, {} in flow.tif; {}", in_reference, in_flow,
-                             saturation_cure(camera, light_e)));
+  warn(warnings, {WarningCode::exposure, "camera.exposure",
+                  fmt::format("{} pixels are saturated in reference.tif, {} in flow.tif; {}", in_reference, in_flow,
+                              saturation_cure(camera, light_e))});
 }
 
 namespace {
@@ -214,54 +230,59 @@ double peak_snr(CameraSetup const& camera, double peak_e) {
 
 }  // namespace
 
-void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, double exposure_e, double brightest) {
+void warn_of_exposure(Warnings& warnings, Scene const& scene, double exposure_e, double brightest) {
   if (!scene.setup.experiment().sources.in_photons) return;
   CameraSetup const& camera = scene.setup.camera;
   double const photons = scene.photon_unit, limit_e = photon_limited_exposure(scene);
   std::string const cure =
       "increase laser.pulse_energy_mj, reduce lens.f_number, or use larger particles (particles.diameter_um)";
   if (!(brightest > 0) || photons < 1) {
-    warn(warnings,
+    warn(
+        warnings,
+        {WarningCode::exposure, "particles",
          fmt::format(
-             "particles: the brightest one sends {:.2g} photons per pulse through the lens, {}; {}",
-             brightest > 0 ? photons : 0.0,
+             "the brightest one sends {:.2g} photons per pulse through the lens, {}; {}", brightest > 0 ? photons : 0.0,
              camera.noise.enabled
                  ? "too few for any sensor"
                  : "too few for any sensor (the images do not show it, since they have no noise; add [camera.noise])",
-             cure));
+             cure)});
   } else if (camera.absolute_exposure) {
     double const peak_e = exposure_e * brightest, snr = peak_snr(camera, peak_e);
     if (!camera.noise.enabled || snr >= least_peak_snr) return;
-    warn(warnings, fmt::format("camera.exposure = \"absolute\": the brightest particle sends {:.3g} photons through "
-                               "the lens, and the brightest pixel collects {:.3g} electrons, {:.2g} times its noise "
-                               "(below {:g} most particles are lost in noise); {}",
-                               photons, peak_e, snr, least_peak_snr, cure));
+    warn(warnings,
+         {WarningCode::exposure, "camera.exposure",
+          fmt::format(
+              "\"absolute\": the brightest particle sends {:.3g} photons through the lens, and the brightest pixel "
+              "collects {:.3g} electrons, {:.2g} times its noise (below {:g} most particles are lost in noise); {}",
+              photons, peak_e, snr, least_peak_snr, cure)});
   } else if (camera.exposure_e && exposure_e > limit_e * (1 + 1e-9)) {
-    warn(warnings, fmt::format("camera.exposure: the brightest particle sends {:.3g} photons through the lens, which "
-                               "release {:.3g} electrons at a quantum efficiency of {:.3g}, not {:.6g}: the images "
-                               "have less noise than such light; set camera.exposure = \"auto\" or \"absolute\", or {}",
-                               photons, limit_e, camera.noise.quantum_efficiency, exposure_e, cure));
+    warn(warnings, {WarningCode::exposure, "camera.exposure",
+                    fmt::format("the brightest particle sends {:.3g} photons through the lens, which release {:.3g} "
+                                "electrons at a quantum efficiency of {:.3g}, not {:.6g}: the images have less noise "
+                                "than such light; set camera.exposure = \"auto\" or \"absolute\", or {}",
+                                photons, limit_e, camera.noise.quantum_efficiency, exposure_e, cure)});
   } else if (double const wanted = Detector::auto_exposure(camera, brightest); !camera.exposure_e && wanted > limit_e) {
     double const full_scale = std::pow(2.0, camera.bit_depth) - 1;
     warn(warnings,
-         fmt::format("camera.exposure = \"auto\" is limited by the light: the brightest particle sends {:.3g} photons "
-                     "through the lens, which release {:.3g} electrons at a quantum efficiency of {:.3g}, and its "
-                     "pixel reaches {:.2g} % of full scale instead of 90 %. For 90 %, {:.3g} times as much light is "
-                     "required: {}, or reduce camera.noise.full_well_e",
-                     photons, limit_e, camera.noise.quantum_efficiency,
-                     100 * Detector(camera, limit_e).ideal_level(brightest) / full_scale, wanted / limit_e, cure));
+         {WarningCode::exposure, "camera.exposure",
+          fmt::format("\"auto\" is limited by the light: the brightest particle sends {:.3g} photons through the lens, "
+                      "which release {:.3g} electrons at a quantum efficiency of {:.3g}, and its pixel reaches {:.2g} "
+                      "% of full scale instead of 90 %. For 90 %, {:.3g} times as much light is required: {}, or "
+                      "reduce camera.noise.full_well_e",
+                      photons, limit_e, camera.noise.quantum_efficiency,
+                      100 * Detector(camera, limit_e).ideal_level(brightest) / full_scale, wanted / limit_e, cure)});
   }
 }
 
-RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCase const& prepared,
-                                  RenderedCase const& rendered, RecordedFrames const& frames) {
+RenderedOutcome warn_of_rendering(Warnings& warnings, PreparedCase const& prepared, RenderedCase const& rendered,
+                                  RecordedFrames const& frames) {
   Setup const& setup = prepared.scene.setup;
   Rendering const& rendering = *rendered.rendering;
   warn_of_saturation(warnings, setup.camera, frames.saturated_reference, frames.saturated_flow,
                      rendered.exposure_e * rendering.in_place->brightest());
   warn_of_exposure(warnings, prepared.scene, rendered.exposure_e, rendering.in_place->brightest());
   RenderedOutcome outcome;
-  outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering.truth, rendering.pupil_margin);
+  outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering);
   outcome.accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
   warn_of_ray_limit(warnings, prepared, rendering);
   outcome.side_faces = side_face_accuracy(prepared.scene, rendering);

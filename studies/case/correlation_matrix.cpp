@@ -11,7 +11,7 @@ std::optional<Eigen::MatrixXd> correlation_factor(Eigen::MatrixXd const& coeffic
   for (Eigen::Index k = 0; k < n; ++k) {
     double const pivot = coefficients(k, k) - factor.row(k).squaredNorm();
     if (pivot < -rounding) return std::nullopt;
-    bool const follows = pivot <= rounding;  // determined by the inputs before it
+    bool const follows = pivot <= rounding;  // whether input k is a linear combination of the inputs before it
     if (!follows) factor(k, k) = std::sqrt(pivot);
     for (Eigen::Index i = k + 1; i < n; ++i) {
       double const rest = coefficients(i, k) - factor.row(i).dot(factor.row(k));

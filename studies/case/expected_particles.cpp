@@ -17,9 +17,9 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t drawn = 4001;       // sample size for quantiles with an accuracy of a few per cent
 constexpr double angle_margin = 0.01;     // margin about the scattering angles seen by the lens [rad]
 constexpr double visible_snr = 5;         // Rose's criterion
-constexpr double largest_tried = 100e-6;  // [m]
-constexpr double smallest_tried = 10e-9;  // [m]
-constexpr int sizes_a_decade = 150;       // 1.5 % apart
+constexpr double largest_tried = 100e-6;  // largest diameter for which the visibility is tested [m]
+constexpr double smallest_tried = 10e-9;  // smallest diameter for which the visibility is tested [m]
+constexpr int sizes_a_decade = 150;       // diameters tested per decade, 1.5 % apart
 
 SizeSpread spread_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());

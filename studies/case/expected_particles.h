@@ -12,19 +12,19 @@ struct SizeSpread {
 /// Expected images of particles in the middle of the laser sheet, where the camera's axis intersects it, from closed
 /// forms without a medium.
 struct ExpectedParticles {
-  double magnification = 0;      ///< at the sheet [1]
+  double magnification = 0;      ///< magnification at the sheet [1]
   double diffraction_px = 0;     ///< e^-2 diameter of the diffraction-limited PSF [px]
   double image_diameter_px = 0;  ///< e^-2 diameter of the median particle's image in the middle of the sheet [px]
   /// larger of the e^-2 image diameters at half the sheet's thickness in front of and behind its middle [px]
   double sheet_edge_diameter_px = 0;
-  double depth_of_field = 0;  ///< [m]
+  double depth_of_field = 0;  ///< depth of field [m]
   /// illuminated and visible particles per pixel; NaN: unknown, for particles from a file [1/px]
   double per_pixel = 0;
   /// fraction of the image covered by particle images; above about 0.3 they overlap [1]
   double source_density = 0;
-  SizeSpread diameter;        ///< [m]
+  SizeSpread diameter;        ///< particle diameters [m]
   SizeSpread photons;         ///< photons through the lens per pulse
-  SizeSpread peak_electrons;  ///< in the pixel on which an image is centred [e]
+  SizeSpread peak_electrons;  ///< charge of the pixel on which an image is centred [e]
   double saturated = 0;       ///< fraction of particles whose peak exceeds the full well [1]
   /// smallest diameter above which all particles are visible [m]; NaN: none up to 100 um
   double smallest_visible = 0;
@@ -40,6 +40,7 @@ struct ExpectedParticleImage {
 
   double diameter_px() const;  ///< returns the e^-2 diameter of the total image [px]
 };
+/// Returns the image of the median particle of a PIV setup.
 /// @pre setup.piv
 /// @throws DataError for an invalid file of diameters
 ExpectedParticleImage particle_image(Setup const& setup);
@@ -53,8 +54,7 @@ ExpectedParticleImage particle_image(Setup const& setup);
 /// - Photons as in the renderer: fluence times differential cross-section times solid angle of the entrance pupil. The
 ///   peak pixel's share is that of a centred Gaussian or Airy pattern.
 /// - A particle is visible if its peak exceeds five times the combined shot, dark and read noise (Rose, J. Opt. Soc.
-/// Am.
-///   38 (1948) 196).
+///   Am. 38 (1948) 196).
 /// @pre setup.piv
 /// @throws DataError for an invalid file of diameters or particles
 ExpectedParticles expected_particles(Setup const& setup);

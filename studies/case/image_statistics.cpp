@@ -20,7 +20,8 @@ std::vector<Neighbourhood> neighbourhoods(Image<double> const& image) {
   if (image.columns() < 3 || image.rows() < 3) return all;
   auto const columns = static_cast<std::size_t>(image.columns());
   all.reserve((columns - 2) * (static_cast<std::size_t>(image.rows()) - 2));
-  std::vector<double> sum(columns), second(columns);  // over three rows: sum, and response to [-1 2 -1]
+  std::vector<double> sum(columns), second(columns);  // sum over the three rows around `row`, and their response to [-1
+                                                      // 2 -1], for each column
   for (int row = 1; row + 1 < image.rows(); ++row) {
     double const* const here = image.data() + static_cast<std::size_t>(row) * columns;
     for (std::size_t i = 0; i < columns; ++i) {

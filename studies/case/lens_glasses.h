@@ -10,10 +10,10 @@ namespace gladstone {
 
 /// Glass of a lens: how its file names it, and which glass was taken.
 struct LensGlass {
-  std::string name;                    ///< as in the lens file
+  std::string name;                    ///< name of the glass in the lens file
   std::string catalogue;               ///< catalogue and name, "SCHOTT:N-BK7"; empty: described by the lens file itself
   std::string place;                   ///< file and line of the catalogue
-  double index = 1;                    ///< at the wavelength of the lens [1]
+  double index = 1;                    ///< refractive index at the wavelength of the lens [1]
   std::vector<std::size_t> surfaces;   ///< surfaces behind which it is, from 1
   std::vector<std::string> also_in{};  ///< glasses of the same name in other catalogues
 };

@@ -22,7 +22,7 @@ class PairProgress {
  private:
   bool shown_;
   Progress progress_;
-  ProgressMonitor of_steps_;  ///< unread: the sequence reports whole pairs
+  ProgressMonitor of_steps_;  ///< receives the progress of the steps, which is not shown
   ProgressMonitor::Scope scope_{of_steps_};
 };
 

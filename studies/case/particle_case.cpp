@@ -47,7 +47,7 @@ TruthGroup const& particles_group() {
   return group;
 }
 
-/// Minimum, median and maximum of positive numbers.
+/// Returns minimum, median and maximum of positive numbers.
 nlohmann::json spread_of_light(std::vector<double> values) {
   if (values.empty()) return nullptr;
   std::sort(values.begin(), values.end());
@@ -56,8 +56,9 @@ nlohmann::json spread_of_light(std::vector<double> values) {
 
 }  // namespace
 
-void write_particle_truth(std::string const& path, Scene const& scene, GroundTruth const& truth,
-                          StatusCounts const& statuses, RenderMethod method, FileOrigin const& origin) {
+void write_particle_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
+                          FileOrigin const& origin) {
+  GroundTruth const& truth = rendering.truth;
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   Hdf5Axes axes(file);
@@ -76,12 +77,12 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
              "the camera",
              "pulse, particle, (x, y, z)");
   axes.name("/particles/position_m", {"/pulse", "/particles/particle", "/coordinate"});
-  write_sources(file, axes, particles_group(), truth, statuses);
+  write_sources(file, axes, particles_group(), rendering);
   file.write("/particles/diameter_m", std::span<double const>(truth.particles.diameter_m), {count}, "m",
              "diameter of the particle", "particle");
   axes.name("/particles/diameter_m", {"/particles/particle"});
   axes.attach();
-  write_source_attributes(file, particles_group(), scene, method);
+  write_source_attributes(file, particles_group(), scene, rendering.plan);
   file.attribute("/particles", "path_error_m", scene.particles.path.error);
   file.attribute("/particles", "lag_error_m", scene.particles.path.lag_error);
   if (scene.mie) file.attribute("/particles", "scattering_table_error", scene.mie->error());

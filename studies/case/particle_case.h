@@ -4,14 +4,13 @@
 #include <string>
 
 #include "render/files/hdf5_file.h"
-#include "render/scene/ground_truth.h"
-#include "render/scene/scene.h"
+#include "render/scene/renderer.h"
 
 namespace gladstone {
 
 /// Writes truth.h5 of PIV: /particles and /rays (docs/file-formats.md).
-void write_particle_truth(std::string const& path, Scene const& scene, GroundTruth const& truth,
-                          StatusCounts const& statuses, RenderMethod method, FileOrigin const& origin);
+void write_particle_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
+                          FileOrigin const& origin);
 
 /// Returns the entries of summary.json that only PIV has: numbers of particles, of illuminated ones and of those in
 /// view, their light, and the accuracy of their paths.

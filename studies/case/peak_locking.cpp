@@ -14,9 +14,11 @@ namespace gladstone {
 namespace {
 
 constexpr double usual_dots = 20;      // dots per window assumed for the expected error
-constexpr double smallest_seen = 0.5;  // [px] a narrower autocorrelation peak is noise, not dots
+constexpr double smallest_seen = 0.5;  // smallest recognised diameter [px]; a narrower autocorrelation peak is caused
+                                       // by noise, not by dots
 
-constexpr double warned_image_px = 0.995 * min_image_px;  // the remedies are rounded
+constexpr double warned_image_px = 0.995 * min_image_px;  // diameter below which the warning is given: images that
+                                                          // follow its rounded advice do not cause it again
 constexpr int most_judged_px = 256;                       // size of the evaluated central part of a frame
 
 double square(double x) { return x * x; }
@@ -95,34 +97,39 @@ double defocus_distance(Setup const& setup, double diameter_px) {
   return focused.lens.focus_distance;
 }
 
-std::string locking_advice(Setup const& setup) {
+std::optional<Warning> locking_advice(Setup const& setup) {
   if (setup.target.kind == TargetKind::image) return {};  // dot sizes of an image target are unknown
   ImageDiameters const images = expected_images(setup);
   double const diameter = images.diameter_px();
   if (!(diameter < warned_image_px)) return {};
-  std::string text = fmt::format(
-      "{} images are {:.2f} px wide (e^-2 diameter): below {:g} px peak locking occurs, an error of about {:.2g} px",
-      setup.experiment().sources.one, diameter, min_image_px, images.locking_error_px());
+  Warning warning{WarningCode::unsuitable, "",
+                  fmt::format("{} images are {:.2f} px wide (e^-2 diameter): below {:g} px peak locking occurs, an "
+                              "error of about {:.2g} px",
+                              setup.experiment().sources.one, diameter, min_image_px, images.locking_error_px())};
   std::string const cure = cures(setup, images);
-  if (cure.empty()) return text + "; widen them";
+  if (cure.empty()) {
+    warning.text += "; widen them";
+    return warning;
+  }
   ImageDiameters const wide{images.geometric_px,
                             std::sqrt(square(min_image_px) - square(images.geometric_px) - square(images.blur_px)),
                             images.blur_px};
-  return text +
-         fmt::format("; {} widens them to {:g} px (about {:.2g} px)", cure, min_image_px, wide.locking_error_px());
+  warning.text +=
+      fmt::format("; {} widens them to {:g} px (about {:.2g} px)", cure, min_image_px, wide.locking_error_px());
+  return warning;
 }
 
-std::string locking_advice(Image<double> const& frame) {
+std::optional<Warning> locking_advice(Image<double> const& frame) {
   double const seen = measure_dot_diameter_px(middle_of(frame));
   double const diameter = std::sqrt(square(seen) - 16.0 / 12);
   if (!(diameter > smallest_seen && diameter < warned_image_px)) return {};
   ImageDiameters const images{0, diameter, 0}, wide{0, min_image_px, 0};
-  return fmt::format(
-      "dot images are about {:.2f} px wide (e^-2 diameter, by their autocorrelation): below {:g} px peak locking "
-      "occurs, an error of about {:.2g} px; an f-number {:.2g} times as large, or a little defocus, widens them to "
-      "{:g} px (about {:.2g} px)",
-      diameter, min_image_px, images.locking_error_px(), images.f_number_factor(min_image_px), min_image_px,
-      wide.locking_error_px());
+  return Warning{WarningCode::unsuitable, "",
+                 fmt::format("dot images are about {:.2f} px wide (e^-2 diameter, by their autocorrelation): below "
+                             "{:g} px peak locking occurs, an error of about {:.2g} px; an f-number {:.2g} times as "
+                             "large, or a little defocus, widens them to {:g} px (about {:.2g} px)",
+                             diameter, min_image_px, images.locking_error_px(), images.f_number_factor(min_image_px),
+                             min_image_px, wide.locking_error_px())};
 }
 
 }  // namespace gladstone

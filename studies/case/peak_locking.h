@@ -3,6 +3,7 @@
 #include <string>
 
 #include "render/base/image.h"
+#include "render/base/warning.h"
 #include "render/scene/setup.h"
 
 namespace gladstone {
@@ -34,13 +35,13 @@ ImageDiameters expected_images(Setup const& setup);
 double defocus_distance(Setup const& setup, double diameter_px);
 
 /// Returns a warning of images more than 0.5 % below min_image_px, with their diameter, the expected error, and the
-/// f-number or focus distance that avoids it. Empty if the images are large enough.
+/// f-number or focus distance that avoids it; nullopt if the images are large enough.
 /// @pre not a calibration
-std::string locking_advice(Setup const& setup);
+std::optional<Warning> locking_advice(Setup const& setup);
 
 /// Returns the same warning for a frame without a setup, from the autocorrelation of the dots in its middle
-/// (ImageStatistics); empty if their size cannot be estimated. The measured width includes the pixel's own variance of
-/// 1/12 px^2, which is subtracted.
-std::string locking_advice(Image<double> const& frame);
+/// (ImageStatistics); nullopt if their size cannot be estimated. The measured width includes the pixel's own variance
+/// of 1/12 px^2, which is subtracted.
+std::optional<Warning> locking_advice(Image<double> const& frame);
 
 }  // namespace gladstone

@@ -8,15 +8,18 @@
 #include "render/planning.h"
 #include "render/render.h"
 #include "render/scene/calibration_planes.h"
+#include "render/scene/particle_scene.h"
 
 namespace gladstone {
 namespace {
 
 /// Returns the pixel of the strongest density gradient in view.
 Vec2d steepest_pixel(Scene const& scene) {
+  RenderPlan plan;
+  plan.step = scene.medium.coarsest_step;  // the map needs no accurate step
   constexpr int nodes_across = 64;
   CameraSetup const& camera = scene.setup.camera;
-  FieldMap const map = field_in_view(scene, std::max(1, std::max(camera.columns, camera.rows) / nodes_across));
+  FieldMap const map = field_in_view(scene, plan, std::max(1, std::max(camera.columns, camera.rows) / nodes_across));
   Vec2d place = 0.5 * Vec2d{camera.columns - 1.0, camera.rows - 1.0};
   double most = 0;
   for (int row = 0; row < map.density_gradient.rows(); ++row) {
@@ -53,7 +56,7 @@ std::size_t keep_near(Scene& scene, CasePreview const& preview) {
   return scene.setup.experiment().sources.retain(scene, [&](Vec2d pixel) { return is_near(preview, pixel, margin); });
 }
 
-/// Records the part of a frame.
+/// Records the previewed part of a frame.
 Image<std::uint16_t> record_part(CasePreview const& preview, Detector const& detector, Image<double> const& light,
                                  RandomStream stream) {
   Recording const recording = detector.record(light, stream);
@@ -91,21 +94,17 @@ CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
   preview.at_gradient = setup.experiment().measures_density && setup.medium.field.kind != FieldKind::none;
   Vec2d const centre = 0.5 * Vec2d{setup.camera.columns - 1.0, setup.camera.rows - 1.0};
   place_preview(preview, setup.camera, centre);
-  if (preview.at_gradient) {
-    scene.step = scene.medium.coarsest_step;  // the map needs no accurate step
-    place_preview(preview, setup.camera, steepest_pixel(scene));
-  }
+  if (preview.at_gradient) place_preview(preview, setup.camera, steepest_pixel(scene));
   preview.sources = keep_near(scene, preview);
   if (preview.sources == 0) {
     throw DataError(ErrorCode::undetermined, "preview",
                     "contains no dot or particle (none is near this part of the image); render the "
                     "complete images, or check the target or the particles");
   }
-  scene = with_chosen_step(std::move(scene));
-  scene = with_rays(scene, choose_ray_budget(scene));
-  preview.rays = scene.rays_per_dot;
-  Rendering const rendering = render_planned(scene, renderer, RenderImages::yes, RenderTheory::no);
-  preview.method = rendering.method;
+  RenderPlan const plan = plan_rendering(scene);
+  Rendering const rendering = render(scene, plan, renderer, RenderImages::yes, RenderTheory::no);
+  preview.rays = plan.rays;
+  preview.method = rendering.plan.method;
   Detector const detector(setup.camera, preview_exposure(scene, rendering.light));
   preview.frames.push_back(record_part(preview, detector, rendering.light.reference, RandomStream::noise_reference));
   if (!planes) {

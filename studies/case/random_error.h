@@ -28,9 +28,10 @@ T pattern_error_px(T geometric_px, T spot_px, double dots) {
 }
 
 /// Returns the random error of a displacement measured by our correlator with default settings, along the displacement,
-/// averaged over all sub-pixel fractions [px]. (Across it, without displacement, the error is 0.3 to 1.1 times that;
-/// see docs/design.md.) It combines the error due to the dots' sub-pixel positions, which decreases with the size of
-/// dots and PSF, and that due to noise, which decreases with number and size of the dots and increases with the PSF.
+/// averaged over all sub-pixel fractions [px]. (Perpendicular to the displacement, the error is 0.3 to 1.1 times as
+/// large; see docs/design.md.) It combines the error due to the dots' sub-pixel positions, which decreases with the
+/// size of dots and PSF, and that due to noise, which decreases with number and size of the dots and increases with the
+/// PSF.
 ///
 ///   pattern^2 = (0.006 exp(-7.4 s^2))^2 + (0.204 exp(-1.76 g^2 - 9.7 s^2))^2 + 0.00135^2
 ///   noise = 0.287 q (1 + 1.6 s^2) d^-0.737,   d^2 = g^2 + 16 s^2
@@ -39,7 +40,7 @@ T pattern_error_px(T geometric_px, T spot_px, double dots) {
 /// Fitted to the 144 cases of the study random_error (data/estimators/random_error.csv: dots of 0.8 to 4 px, PSF of
 /// sigma 0.1 to 0.8 px, noise of 0.6 to 11 % of the peak, 5 to 45 dots per window, strain of 0.005). The rms deviation
 /// from them is 18 %, the largest a factor of 1.7. Strains up to 0.02 have no effect (docs/estimators.md). In the
-/// pattern term, wider PSFs count as the widest measured.
+/// pattern term, wider PSFs are treated like the widest one measured.
 /// @param geometric_px  g, diameter of the dot's geometric image [px]
 /// @param spot_px       s, standard deviation of the Gaussian PSF [px]
 /// @param noise         q, standard deviation of the noise at the peak, relative to the peak [1]

@@ -81,7 +81,7 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
 }
 
 /// Converts a row of a table of rays.
-/// @param place  of the row, for messages
+/// @param place  location of the row, for messages
 Ray<double> ray_of(double const* v, std::string const& place, double farthest) {
   Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
   if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {
@@ -120,10 +120,11 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
   return rays;
 }
 
-std::vector<TracedRay> trace_rays(Scene const& scene, std::vector<Ray<double>> const& rays, Through through) {
+std::vector<TracedRay> trace_rays(Scene const& scene, double step, std::vector<Ray<double>> const& rays,
+                                  Through through) {
   std::vector<TracedRay> traced(rays.size());
-  TracingOptions<double> const options{scene.step, scene.setup.medium.ambient_refractivity(),
-                                       scene.setup.medium.integrator, scene.setup.medium.faces};
+  TracingOptions<double> const options{step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
+                                       scene.setup.medium.faces};
   std::visit(
       [&](auto const& medium) {
         parallel_chunks(rays.size(), 256, [&](std::size_t begin, std::size_t end) {

@@ -27,7 +27,7 @@ BuiltMedium stand_in_medium(MediumSetup setup) {
   return medium;
 }
 
-/// Builds a scene with the coarsest step and the dots of a target, but without particles.
+/// Builds a scene with the dots of a target, but without particles.
 Scene cost_scene(Setup const& setup) {
   Scene scene;
   scene.setup = setup;
@@ -36,7 +36,6 @@ Scene cost_scene(Setup const& setup) {
   if (setup.experiment().sources.on_target) scene.dots = build_target(setup);
   scene.medium = stand_in_medium(setup.medium);
   if (setup.medium.second_field) scene.second_medium = stand_in_medium(select_second_pulse(setup.medium));
-  scene.step = setup.medium.step_mm ? *setup.medium.step_mm * unit::millimetre : scene.medium.coarsest_step;
   return scene;
 }
 
@@ -65,8 +64,10 @@ RenderCost estimate_render_cost(Setup const& setup) {
   bool const planes = !setup.planes.empty();
   RenderCost cost;
   cost.memory = memory_requirements(setup);
-  Scene scene = cost_scene(planes ? plane_setup(setup, setup.planes.front()) : setup);
-  cost.method = resolve_render_method(scene);
+  Scene const scene = cost_scene(planes ? plane_setup(setup, setup.planes.front()) : setup);
+  RenderPlan plan;
+  plan.step = setup.medium.step_mm ? *setup.medium.step_mm * unit::millimetre : scene.medium.coarsest_step;
+  plan.method = cost.method = resolve_render_method(scene);
   double const images = planes ? static_cast<double>(setup.planes.size()) : 1;
   cost.sources = images * kind.expected_sources(scene);
   if (cost.method == RenderMethod::formula) return cost;
@@ -76,28 +77,29 @@ RenderCost estimate_render_cost(Setup const& setup) {
     cost.memory.insert(cost.memory.end(), table.begin(), table.end());
   }
   cost.rays_are_largest = !setup.render.rays_per_dot && !by_table && !chief;
-  std::uint64_t const automatic = chief ? 1 : by_table ? initial_table_rays : max_rays_per_source(scene);
-  scene.rays_per_dot = setup.render.rays_per_dot.value_or(automatic);
-  cost.rays_per_source = cost.expected_rays = static_cast<double>(scene.rays_per_dot);
+  std::uint64_t const automatic = chief ? 1 : by_table ? initial_table_rays : max_rays_per_source(scene, plan);
+  plan.rays = setup.render.rays_per_dot.value_or(automatic);
+  cost.rays_per_source = cost.expected_rays = static_cast<double>(plan.rays);
   if (kind.expected_rays) {
     double const media = scene.second_medium ? 2 : 1;
-    cost.processor_seconds = media * cost.sources * cost.rays_per_source * ray_seconds(scene);
+    cost.processor_seconds = media * cost.sources * cost.rays_per_source * ray_seconds(scene, plan);
     if (cost.rays_are_largest) cost.expected_rays = kind.expected_rays(setup, cost.rays_per_source);
   } else if (by_table && !focused_dots(scene)) {  // refused by render, with the reason
     cost.processor_seconds = not_measured;
   } else {
-    cost.processor_seconds = images * render_seconds(scene, planes ? RenderTheory::no : RenderTheory::yes);
+    cost.processor_seconds = images * render_seconds(scene, plan, planes ? RenderTheory::no : RenderTheory::yes);
   }
   cost.processor_seconds *= measured_share(setup, cost.method);
   cost.expected_seconds = cost.processor_seconds * cost.expected_rays / cost.rays_per_source;
   return cost;
 }
 
-double expected_render_seconds(Scene const& scene, RenderTheory theory) {
-  double const longest = measured_share(scene.setup, resolve_render_method(scene)) * render_seconds(scene, theory);
+double expected_render_seconds(Scene const& scene, RenderPlan const& plan, RenderTheory theory) {
+  double const longest =
+      measured_share(scene.setup, resolve_render_method(scene, plan)) * render_seconds(scene, plan, theory);
   auto const expected_rays = case_kind(scene.setup).expected_rays;
-  if (!expected_rays || !scene.adaptive_criteria) return longest;
-  auto const most = static_cast<double>(scene.rays_per_dot);
+  if (!expected_rays || !plan.adaptive_criteria) return longest;
+  auto const most = static_cast<double>(plan.rays);
   return longest * expected_rays(scene.setup, most) / most;
 }
 

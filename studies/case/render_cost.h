@@ -12,15 +12,16 @@ namespace gladstone {
 struct RenderCost {
   RenderMethod method = RenderMethod::automatic;
   double sources = 0;             ///< number of dots (of all planes) or particles in the sheet; NaN: unknown
-  double rays_per_source = 0;     ///< configured, or the largest number that "auto" may choose
+  double rays_per_source = 0;     ///< number of rays per source: configured, or the largest that "auto" may choose
   bool rays_are_largest = false;  ///< the number of rays is an upper limit
-  double expected_rays = 0;       ///< of PIV with "auto": number that most particles require; otherwise rays_per_source
+  double expected_rays = 0;       ///< number of rays that most particles require (PIV with "auto"); otherwise
+                                  ///< rays_per_source
   double processor_seconds = 0;   ///< time on one core of the processor of docs/performance.md [s]; NaN: unknown
-  double expected_seconds = 0;    ///< the same for the expected number of rays
+  double expected_seconds = 0;    ///< processor time for the expected number of rays [s]
   std::vector<MemoryRequirement> memory;
 
   double seconds() const;          ///< expected wall time on the threads of this process, without preparation [s]
-  double longest_seconds() const;  ///< the same for the largest number of rays [s]
+  double longest_seconds() const;  ///< expected wall time for the largest number of rays [s]
   double bytes() const;            ///< sum of `memory` [bytes]
 };
 
@@ -32,8 +33,8 @@ struct RenderCost {
 /// @throws DataError if a file cannot be read
 RenderCost estimate_render_cost(Setup const& setup);
 
-/// Estimates the processor time for rendering a prepared scene as estimate_render_cost() does [s]; for adaptive ray
+/// Estimates the processor time for rendering a scene by a plan as estimate_render_cost() does [s]; for adaptive ray
 /// numbers of particles with the number of rays that it expects.
-double expected_render_seconds(Scene const& scene, RenderTheory theory);
+double expected_render_seconds(Scene const& scene, RenderPlan const& plan, RenderTheory theory);
 
 }  // namespace gladstone

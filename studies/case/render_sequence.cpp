@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 
@@ -28,6 +29,7 @@
 #include "studies/case/pair_progress.h"
 #include "studies/case/rendered_sequence_folder.h"
 #include "studies/case/sequence_pair.h"
+#include "studies/case/warning_json.h"
 #include "studies/case/warning_kinds.h"
 
 namespace gladstone {
@@ -58,11 +60,11 @@ std::string hash_pair(SetupRenderer const& setup, InputHashes& inputs) {
 }
 
 /// Returns the warnings of a pair's summary.json, those of all its cameras.
-std::vector<std::string> pair_warnings(Json const& summary) {
-  std::vector<std::string> warnings;
+Warnings pair_warnings(Json const& summary) {
+  Warnings warnings;
   auto const append = [&warnings](Json const& one) {
-    if (auto const found = one.find("warnings"); found != one.end())
-      for (Json const& text : *found) warnings.push_back(text.get<std::string>());
+    Warnings const found = read_warnings(one);
+    warnings.insert(warnings.end(), found.begin(), found.end());
   };
   append(summary);
   if (auto const cameras = summary.find("cameras"); cameras != summary.end())
@@ -116,14 +118,14 @@ class SequenceRendering {
   }
 
   /// Summarises the warnings of all pairs but the first, which logged its own.
-  std::vector<std::string> later_warnings() const {
+  Warnings later_warnings() const {
     WarningKinds kinds;
+    if (pairs_.empty()) return {};
+    Warnings const of_first = read_warnings(pairs_.front());
     for (std::size_t i = 1; i < pairs_.size(); ++i) {
-      Json const& of_first = pairs_.front().at("warnings");
-      for (Json const& warning : pairs_[i].at("warnings")) {
+      for (Warning const& warning : read_warnings(pairs_[i])) {
         if (std::find(of_first.begin(), of_first.end(), warning) != of_first.end()) continue;
-        auto const text = warning.get<std::string>();
-        kinds.add(pairs_[i].at("folder").get<std::string>(), text, text);
+        kinds.add(pairs_[i].at("folder").get<std::string>(), warning, warning.place);
       }
     }
     return kinds.summary();
@@ -165,7 +167,7 @@ class SequenceRendering {
 
   /// Renders the case of a pair. @return its entry in summary.json
   Json render_case_of(std::size_t number, bool first, SetupRenderer& setup, Renderer& renderer) {
-    std::string fingerprint = hash_pair(setup, inputs_);  // before the files are read for rendering
+    std::string fingerprint = hash_pair(setup, inputs_);  // hash the files before they are read for rendering
     if (!first) read_earlier_frames(number);
     std::optional<LogSilencer> silencer;
     if (!first) silencer.emplace();
@@ -181,6 +183,7 @@ class SequenceRendering {
       medium_ = std::move(rendered.medium);
       shared_.medium = &medium_;
     }
+    Warnings const warnings = pair_warnings(rendered.summary);
     return {{"pair", number},
             {"folder", rendered_sequence_file::pair(number)},
             {"frames", Json::array({first_frame(number), second_frame(number)})},
@@ -188,7 +191,8 @@ class SequenceRendering {
             {"exposure_e", std::move(exposures)},
             {"device", rendered.cameras.front().device},
             {"seconds_render", seconds},
-            {"warnings", pair_warnings(rendered.summary)}};
+            {"warnings", to_strings(warnings)},
+            {"warning_records", warnings}};
   }
 
   void add_pair(std::size_t number, bool first, Json pair, bool replace_frames) {
@@ -216,7 +220,7 @@ class SequenceRendering {
       std::error_code error;
       fs::path const frame = frames_of(camera) / name;
       fs::path const original = case_of(number, camera) / image;
-      // A frame that is no second name of its image may have been replaced.
+      // A frame whose file is not a second name of the recorded image may have been replaced.
       if (replace || !fs::equivalent(original, frame, error)) give_second_name(original, frame);
     };
     if (first) add(case_file::reference, first_frame(number));
@@ -301,7 +305,7 @@ RenderedSequence SequenceRenderer::render(Renderer& renderer, std::string const&
   SequenceRendering run(folder, *first_.first_setup().sequence, first_.camera_names());
   RenderedSequence result;
   try {
-    std::optional<PairProgress> progress;  // of the pairs after those of an earlier run
+    std::optional<PairProgress> progress;  // progress over the pairs after those of an earlier run
     for (std::size_t k = 0; k < pair_count_; ++k) {
       throw_if_interrupted();
       std::size_t const number = first_pair_ + k;
@@ -320,7 +324,7 @@ RenderedSequence SequenceRenderer::render(Renderer& renderer, std::string const&
         fmt::format("interrupted; {} of {} pairs are done, and the same command continues with the others", run.done(),
                     pair_count_));
   }
-  result.summary = run.summary(true);
+  result.summary = json_text(run.summary(true));
   result.warnings = run.later_warnings();
   result.pairs = pair_count_;
   result.frames = pair_count_ + 1;

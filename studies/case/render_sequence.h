@@ -1,22 +1,22 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/case/render_setup.h"
 
 namespace gladstone {
 
 /// Result of rendering a sequence.
 struct RenderedSequence {
-  nlohmann::ordered_json summary;  ///< contents of summary.json
-  std::size_t frames = 0;          ///< number of frames of each camera
+  std::string summary;     ///< contents of summary.json
+  std::size_t frames = 0;  ///< number of frames of each camera
   std::size_t pairs = 0;
-  std::size_t resumed = 0;            ///< number of pairs rendered by an earlier run
-  double seconds = 0;                 ///< wall time [s]
-  std::vector<std::string> warnings;  ///< warnings of the pairs after the first, which logs its own
+  std::size_t resumed = 0;  ///< number of pairs rendered by an earlier run
+  double seconds = 0;       ///< wall time [s]
+  Warnings warnings;        ///< warnings of the pairs after the first, which logs its own
 };
 
 /// Renders a setup with a table [sequence] into a folder, in which every pair is an ordinary CASE:
@@ -25,7 +25,7 @@ struct RenderedSequence {
 /// - frames/frame_0000.tif, ... (several cameras: frames/CAMERA/): the frames, in the order of `gladstone correlate`.
 ///   Every frame is rendered once: frame A of a pair is the image that an earlier pair recorded.
 /// - sequence.toml and summary.json: setup and state of the sequence.
-/// The exposure of all pairs is that of the first one. One pair at a time is in memory.
+/// All pairs have the exposure of the first one. Only one pair at a time is in memory.
 class SequenceRenderer {
  public:
   /// @param path  path of the setup file, from which the document was read

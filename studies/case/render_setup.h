@@ -21,9 +21,9 @@ struct RenderedCamera {
   char const* name_of_sources = "dots";
   std::uint64_t rays = 0;               ///< smallest number of rays per source
   std::uint64_t most_rays = 0;          ///< largest number of rays of a source
-  std::optional<double> step_mm;        ///< empty if there was no medium
-  std::optional<double> magnification;  ///< empty if it differs between planes [1]
-  double exposure_e = 0;                ///< electrons that a light of 1 generates; 0 for a calibration [e]
+  std::optional<double> step_mm;        ///< integration step; empty if there was no medium
+  std::optional<double> magnification;  ///< magnification; empty if it differs between planes [1]
+  double exposure_e = 0;                ///< electrons per unit of light; 0 for a calibration [e]
   double seconds = 0;
   std::string device;
 };
@@ -35,8 +35,9 @@ struct SharedParts {
     Image<double> reference;                   ///< grey levels of frame A in other pairs; empty: rendered
     std::shared_ptr<ParticleCache> particles;  ///< particles of PIV; null: none
   };
-  std::map<std::string, OfCamera> cameras;  ///< by name; empty for the only camera
-  BuiltMedium const* medium = nullptr;      ///< medium of another pair, if it is the same; null: built
+  /// shared parts of each camera by its name, which is empty for the only camera
+  std::map<std::string, OfCamera> cameras;
+  BuiltMedium const* medium = nullptr;  ///< medium of another pair, if it is the same; null: built
 };
 
 /// Result of rendering a setup.
@@ -59,7 +60,7 @@ class SetupRenderer {
   /// Renders into a CASE folder atomically: all files are written, or none. The case of a single camera is written into
   /// the folder itself; those of several cameras into subfolders of their names, next to the common setup and a
   /// summary.json that contains every camera's summary.
-  /// @param shared  parts of another pair of the same sequence
+  /// @param shared  exposure, images, particles and medium that earlier pairs of the same sequence determined
   RenderedSetup render(Renderer& renderer, std::string const& folder, SharedParts const& shared = {});
 
   /// Setup of the first camera.
@@ -73,7 +74,7 @@ class SetupRenderer {
 
  private:
   struct OneCamera {
-    std::string name;  ///< empty for the only camera
+    std::string name;  ///< name of the camera; empty for the only camera
     CaseSetup loaded;
   };
   /// Renders one camera's case into its part of the output folder.

@@ -15,8 +15,9 @@ bool describes_sequence(SetupDocument const& setup);
 /// sequence.files: files that do not exist, patterns that match none. Empty if the key is absent or invalid.
 std::vector<std::string> sequence_fields(SetupDocument& setup);
 
-/// Replaces sequence.files of a BOS setup by the file of its pair, the first one if there is no key `pair`, as
-/// medium.field.file. Problems are added to the setup. Other setups are not changed.
+/// Selects the pair of a BOS setup: sets medium.field.file to the file of the pair in sequence.files, and removes
+/// sequence.files. Without a key `pair`, the first file is selected. Problems are added to the setup. Other setups are
+/// not changed.
 void select_pair(SetupDocument& setup);
 
 }  // namespace gladstone

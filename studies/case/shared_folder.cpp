@@ -14,13 +14,15 @@ std::string shared_folder() {
   std::error_code error;
   fs::path const executable = fs::read_symlink("/proc/self/exe", error);
   fs::path const installed = executable.parent_path().parent_path() / "share" / "gladstone";
-  // The Python package contains the folder beside its extension module.
+  // The Python package contains the folder next to its extension module.
   Dl_info module{};
   fs::path const packaged = ::dladdr(reinterpret_cast<void const*>(&shared_folder), &module) != 0
                                 ? fs::path(module.dli_fname).parent_path() / "share" / "gladstone"
                                 : fs::path();
-  for (fs::path const& folder : {installed, packaged, fs::path(GLADSTONE_SOURCE_DIR)}) {
-    if (fs::exists(folder / "studies" / "cases" / "table1.toml")) return folder.string();
+  // Programs in the build folder use the source tree.
+  bool const built = fs::equivalent(executable.parent_path(), GLADSTONE_PROGRAM_DIR, error);
+  for (fs::path const& folder : {installed, packaged, built ? fs::path(GLADSTONE_SOURCE_DIR) : fs::path()}) {
+    if (!folder.empty() && fs::exists(folder / "studies" / "cases" / "table1.toml")) return folder.string();
   }
   throw DataError(ErrorCode::missing_file, installed.string(),
                   "studies/cases/table1.toml does not exist (incomplete installation); install gladstone again");

@@ -5,7 +5,8 @@
 namespace gladstone {
 
 /// Returns the folder of the files installed with gladstone (studies/cases, data): relative to the installed
-/// executable, or the source tree.
+/// executable or Python module; for executables in the build folder, the source tree.
+/// @throws DataError (missing_file) if the installation is incomplete
 std::string shared_folder();
 
 }  // namespace gladstone

@@ -25,7 +25,7 @@ Vec2d extent_of_all(std::vector<Setup> const& read, Vec2d middle) {
 
 /// Sets another camera's dot density so that the number of dots equals the first camera's.
 void share_dots(SetupDocument& document, Setup const& first, Setup const& own, Vec2d extent) {
-  // exact to the last dot
+  // the density of the other camera, from which it computes exactly the same number of dots
   double const density = first.dot_count() * 1024.0 * own.pixel_area() / (extent.x * extent.y);
   document.set({"target", "dots_per_32px_window"}, setup_number(density));
 }

@@ -31,7 +31,7 @@ void require_size(TargetPattern const& pattern) {
                   "is 0 (points cannot be printed); give the dots a size, or write .csv");
 }
 
-/// Places of the parts of a page [mm], from its upper left corner, y downwards.
+/// Positions of the parts of a page [mm], from its upper left corner, y downwards.
 struct PagePlaces {
   explicit PagePlaces(TargetPattern const& of) : pattern(of), page(make_target_page(of)) {
     bar_top = page.size_mm.y - bottom_margin_mm + 6;

@@ -10,7 +10,7 @@ namespace gladstone {
 /// Dots of a target for printing, exactly those that the renderer uses (build_target()).
 struct TargetPattern {
   std::vector<Vec2d> centre;  ///< centres in the target's plane, X to the right and Y upwards [m]
-  double diameter = 0;        ///< of every dot [m]
+  double diameter = 0;        ///< diameter of every dot [m]
   Vec2d middle{};             ///< centre of the pattern [m]
   Vec2d extent{};             ///< width and height that contain all dots entirely [m]
   Polarity polarity = Polarity::bright;
@@ -19,7 +19,7 @@ struct TargetPattern {
 /// Page with a pattern at its true scale.
 struct TargetPage {
   Vec2d size_mm{};          ///< width and height of the page [mm]
-  Vec2d corner_mm{};        ///< upper left corner of the pattern, from that of the page [mm]
+  Vec2d corner_mm{};        ///< upper left corner of the pattern, relative to that of the page [mm]
   double scale_bar_mm = 0;  ///< length of the scale bar [mm]
 };
 

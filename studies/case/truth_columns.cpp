@@ -6,8 +6,8 @@
 
 namespace gladstone {
 
-void write_sources(Hdf5Writer& file, Hdf5Axes& axes, TruthGroup const& group, GroundTruth const& truth,
-                   StatusCounts const& statuses) {
+void write_sources(Hdf5Writer& file, Hdf5Axes& axes, TruthGroup const& group, Rendering const& rendering) {
+  GroundTruth const& truth = rendering.truth;
   std::size_t const count = truth.size();
   for (TruthColumn const& column : group.columns) {
     std::string const name = group.path + column.name;
@@ -16,7 +16,7 @@ void write_sources(Hdf5Writer& file, Hdf5Axes& axes, TruthGroup const& group, Gr
   }
   std::vector<std::int64_t> rays, counts;
   for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
-  for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
+  for (auto const& frame : rendering.statuses) counts.insert(counts.end(), frame.begin(), frame.end());
   file.write(group.path + "/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", group.rays,
              group.source + ", " + group.frame_order);
   file.write(group.path + "/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
@@ -29,12 +29,12 @@ void write_sources(Hdf5Writer& file, Hdf5Axes& axes, TruthGroup const& group, Gr
   axes.name("/rays/status", {group.frame, "/rays/kind"});
 }
 
-void write_source_attributes(Hdf5Writer& file, TruthGroup const& group, Scene const& scene, RenderMethod method) {
+void write_source_attributes(Hdf5Writer& file, TruthGroup const& group, Scene const& scene, RenderPlan const& plan) {
   bool const by_splines = scene.setup.medium.interpolation == FieldInterpolation::cubic_bspline;
   file.attribute(group.path, "interpolation", by_splines ? "cubic_bspline" : "trilinear");
   file.attribute(group.path, "conventions", group.conventions);
-  file.attribute("/", "method", to_string(method));
-  file.attribute(group.path, "step_mm", scene.step * 1e3);
+  file.attribute("/", "method", to_string(plan.method));
+  file.attribute(group.path, "step_mm", plan.step * 1e3);
   file.attribute(group.path, "magnification", scene.imaging.magnification);
 }
 

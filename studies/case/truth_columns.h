@@ -5,20 +5,19 @@
 #include <vector>
 
 #include "render/files/hdf5_axes.h"
-#include "render/scene/ground_truth.h"
-#include "render/scene/scene.h"
+#include "render/scene/renderer.h"
 
-/// What the groups /dots and /particles of truth.h5 have in common.
+/// Common structure of the groups /dots and /particles of truth.h5.
 namespace gladstone {
 
 /// Dataset with two numbers per source, in GroundTruth or, of particles only, in ParticleTruth.
 struct TruthColumn {
-  char const* name;  ///< in its group
+  char const* name;  ///< name in its group
   std::vector<Vec2d> GroundTruth::*values;
   char const* units;
   char const* description;
   char const* axes = "dot, component";
-  std::vector<Vec2d> ParticleTruth::*of_particles = nullptr;  ///< if `values` is null
+  std::vector<Vec2d> ParticleTruth::*of_particles = nullptr;  ///< column of particles only; `values` is then null
 
   template <class Truth>
   auto& of(Truth& truth) const {
@@ -26,7 +25,7 @@ struct TruthColumn {
   }
 };
 
-/// Group of the sources.
+/// Group of truth.h5 that describes the light sources.
 struct TruthGroup {
   std::string path;         ///< "/dots"
   std::string source;       ///< axis of the sources in the group: "dot"
@@ -41,12 +40,11 @@ struct TruthGroup {
 };
 
 /// Writes the columns and numbers of rays of a group, and /rays/status.
-void write_sources(Hdf5Writer& file, Hdf5Axes& axes, TruthGroup const& group, GroundTruth const& truth,
-                   StatusCounts const& statuses);
+void write_sources(Hdf5Writer& file, Hdf5Axes& axes, TruthGroup const& group, Rendering const& rendering);
 /// Writes the attributes of a group, and the method.
-void write_source_attributes(Hdf5Writer& file, TruthGroup const& group, Scene const& scene, RenderMethod method);
+void write_source_attributes(Hdf5Writer& file, TruthGroup const& group, Scene const& scene, RenderPlan const& plan);
 
-/// Reads what write_sources() has written, for a truth of the right size.
+/// Reads the datasets of write_sources() into a truth that has the right size already.
 /// @throws DataError if a dataset is missing or has another size
 void read_sources(Hdf5Reader const& file, std::string const& path, TruthGroup const& group, GroundTruth& truth);
 

@@ -68,8 +68,9 @@ void write_field_map(Hdf5Writer& file, FieldMap const& field, Hdf5Axes& axes) {
 
 }  // namespace
 
-void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, RenderMethod method, TableError const* table, FileOrigin const& origin) {
+void write_truth(std::string const& path, Scene const& scene, Rendering const& rendering, FieldMap const& field,
+                 TableError const* table, FileOrigin const& origin) {
+  GroundTruth const& truth = rendering.truth;
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   Hdf5Axes axes(file);
@@ -85,7 +86,7 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
              "dot centres in the world frame: X right, Y up as the camera sees them, Z towards the camera",
              "dot, (x, y, z)");
   axes.name("/dots/position_m", {"/dots/dot", "/coordinate"});
-  write_sources(file, axes, dots_group(), truth, statuses);
+  write_sources(file, axes, dots_group(), rendering);
   std::vector<std::int64_t> by_table;
   for (TruthPath const by : truth.path) by_table.push_back(by == TruthPath::table ? 1 : 0);
   file.write("/dots/by_table", std::span<std::int64_t const>(by_table), {count}, "1",
@@ -95,7 +96,7 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   axes.name("/dots/by_table", {"/dots/dot"});
   write_field_map(file, field, axes);
   axes.attach();
-  write_source_attributes(file, dots_group(), scene, method);
+  write_source_attributes(file, dots_group(), scene, rendering.plan);
   if (table) {
     file.attribute("/dots", "table_truth_error_px", std::max(table->truth_px, table->truth_resolution_px));
     file.attribute("/dots", "table_image_error_levels", std::max(table->image_levels, table->image_resolution_levels));

@@ -4,16 +4,14 @@
 
 #include "render/files/hdf5_file.h"
 #include "render/scene/field_map.h"
-#include "render/scene/ground_truth.h"
-#include "render/scene/ray_budget.h"
-#include "render/scene/scene.h"
+#include "render/scene/renderer.h"
 
 namespace gladstone {
 
 /// Writes truth.h5: /dots, /rays, /field (docs/file-formats.md).
 /// @param table  measured errors of the deflection table; null: no table was used
-void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, RenderMethod method, TableError const* table, FileOrigin const& origin);
+void write_truth(std::string const& path, Scene const& scene, Rendering const& rendering, FieldMap const& field,
+                 TableError const* table, FileOrigin const& origin);
 
 /// Reads the dots, or the particles, of a truth.h5.
 /// @throws DataError if the file is invalid

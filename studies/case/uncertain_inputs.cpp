@@ -31,7 +31,7 @@ class Reader {
  public:
   explicit Reader(SetupDocument& document) : document_(document) {}
 
-  /// @return true if any value below was replaced
+  /// Replaces the uncertain numbers below a node by their values. @return true if there was one
   bool take(SetupNode& node) {
     bool changed = false;
     for (SetupMember& member : node.members) changed |= take_at(member.key, member.value);

@@ -16,14 +16,14 @@ char const* to_string(InputDistribution distribution);
 /// Correlation of an input with another one.
 struct InputCorrelation {
   std::string with;        ///< key of the other input
-  double coefficient = 0;  ///< from -1 to 1 (JCGM 100:2008, 5.2.2)
+  double coefficient = 0;  ///< correlation coefficient, from -1 to 1 (JCGM 100:2008, 5.2.2)
 };
 
 /// A number of a setup given with its standard uncertainty, in the unit of its key: { value = 250.0, sigma = 1.0,
 /// distribution = "normal", degrees_of_freedom = 9 }.
 struct UncertainInput {
   std::vector<std::string> path;  ///< keys from the root
-  std::string key;                ///< the same joined by dots, e.g. "geometry.z_d_mm"
+  std::string key;                ///< path joined by dots, e.g. "geometry.z_d_mm"
   double value = 0;
   /// standard uncertainty for either distribution; a rectangular one has the full width 2 sqrt(3) sigma
   double sigma = 0;

@@ -34,9 +34,10 @@ constexpr std::array<OtherUnit, 0> of_count{};
 /// Range of a key's values in laboratories, from microscopes to wind tunnels.
 struct UsualRange {
   std::array<char const*, 3> path;  ///< tables, then the key; null: unused
-  double low, high;                 ///< in the key's unit
+  double low, high;                 ///< limits in the unit of the key
   char const* unit;
-  std::span<OtherUnit const> others;  ///< most likely unit first
+  /// other units in which the number may have been given, the most likely one first
+  std::span<OtherUnit const> others;
 };
 
 constexpr std::array usual_ranges{
@@ -106,8 +107,8 @@ std::string unusual_value(UsualRange const& usual, double value) {
 
 }  // namespace
 
-std::vector<std::string> unusual_values(SetupDocument& document) {
-  std::vector<std::string> texts;
+Warnings unusual_values(SetupDocument& document) {
+  Warnings warnings;
   for (UsualRange const& usual : usual_ranges) {
     std::vector<std::string> path;
     for (char const* const name : usual.path) {
@@ -128,10 +129,10 @@ std::vector<std::string> unusual_values(SetupDocument& document) {
     if (tables.size() != 1) continue;
     SetupTable table = tables.front();
     for (std::size_t i = 1; i + 1 < path.size(); ++i) table = table.table(path[i]);
-    texts.push_back(fmt::format("{}: {}.{} = {}", table.where(path.back()), path.front(),
-                                fmt::join(path.begin() + 1, path.end(), "."), text));
+    warnings.push_back({WarningCode::implausible, table.where(path.back()),
+                        fmt::format("{}.{} = {}", path.front(), fmt::join(path.begin() + 1, path.end(), "."), text)});
   }
-  return texts;
+  return warnings;
 }
 
 }  // namespace gladstone

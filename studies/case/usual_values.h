@@ -3,12 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/setup/setup_table.h"
 
 namespace gladstone {
 
-/// Returns one text for every value of a setup outside the range usual in laboratories: its key, the range, and the
+/// Returns one warning for every value of a setup outside the range usual in laboratories: its key, the range, and the
 /// unit that would bring the value into it. Examines only keys written in the file; zero and infinity are accepted.
-std::vector<std::string> unusual_values(SetupDocument& document);
+Warnings unusual_values(SetupDocument& document);
 
 }  // namespace gladstone

@@ -8,7 +8,7 @@ namespace gladstone {
 std::string build_text();
 /// Returns the text of --version: version, commit and backends.
 std::string version_text();
-/// Returns the same as a JSON object.
+/// Returns version, commit and backends as a JSON object.
 std::string version_json();
 
 }  // namespace gladstone

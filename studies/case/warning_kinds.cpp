@@ -4,18 +4,21 @@
 
 namespace gladstone {
 
-void WarningKinds::add(std::string const& pair, std::string const& warning, std::string kind) {
-  std::erase_if(kind, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
-  auto const [known, is_new] = index_.emplace(std::move(kind), kinds_.size());
-  if (is_new) kinds_.emplace_back(pair + ": " + warning, 0);
-  ++kinds_[known->second].second;
+void WarningKinds::add(std::string const& pair, Warning const& warning, std::string const& place) {
+  auto const [known, is_new] = index_.try_emplace({warning.code, place}, kinds_.size());
+  if (is_new) kinds_.push_back({at_place(pair, warning), "", 0});
+  Kind& kind = kinds_[known->second];
+  if (is_new || kind.last_pair != pair) ++kind.pairs;
+  kind.last_pair = pair;
 }
 
-std::vector<std::string> WarningKinds::summary() const {
-  std::vector<std::string> texts;
-  for (auto const& [text, count] : kinds_)
-    texts.push_back(count == 1 ? text : fmt::format("{} (and so on, {} pairs in total)", text, count));
-  return texts;
+Warnings WarningKinds::summary() const {
+  Warnings warnings;
+  for (Kind const& kind : kinds_) {
+    warnings.push_back(kind.first);
+    if (kind.pairs > 1) warnings.back().text += fmt::format(" (and so on, {} pairs in total)", kind.pairs);
+  }
+  return warnings;
 }
 
 }  // namespace gladstone

@@ -6,22 +6,28 @@
 #include <utility>
 #include <vector>
 
+#include "render/base/warning.h"
+
 namespace gladstone {
 
-/// Summary of the warnings of many pairs: those that differ only in their numbers are one kind.
+/// Summary of the warnings of many pairs: those with the same code and place are one kind.
 class WarningKinds {
  public:
-  /// @param pair     name of the pair
-  /// @param warning  its warning
-  /// @param kind     the warning without the names that differ between pairs; its digits are ignored
-  void add(std::string const& pair, std::string const& warning, std::string kind);
+  /// @param pair   name of the pair
+  /// @param place  place of the warning without the names that differ between pairs
+  void add(std::string const& pair, Warning const& warning, std::string const& place);
 
   /// Returns the first warning of each kind, with its pair and the number of pairs.
-  std::vector<std::string> summary() const;
+  Warnings summary() const;
 
  private:
-  std::vector<std::pair<std::string, std::size_t>> kinds_;  ///< first warning of a kind, and number of pairs
-  std::map<std::string, std::size_t> index_;                ///< index in kinds_
+  struct Kind {
+    Warning first;
+    std::string last_pair;  ///< pair that was counted last
+    std::size_t pairs;
+  };
+  std::vector<Kind> kinds_;
+  std::map<std::pair<WarningCode, std::string>, std::size_t> index_;  ///< index in kinds_
 };
 
 }  // namespace gladstone

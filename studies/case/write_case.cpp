@@ -6,18 +6,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "render/accuracy.h"
 #include "render/base/parallel.h"
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
 #include "render/files/stop_point.h"
-#include "render/focused_dots/table_error.h"
 #include "render/method.h"
-#include "render/rays/sample_images.h"
 #include "render/render.h"
 #include "render/scene/particle_scene.h"
-#include "render/scene/side_faces.h"
-#include "render/scene/source_sample.h"
 #include "render/sensor/detector.h"
 #include "studies/case/case.h"
 #include "studies/case/case_kind.h"
@@ -27,27 +24,6 @@
 #include "studies/case/render_cost.h"
 
 namespace gladstone {
-namespace {
-
-/// Measures the standard error of the images due to rays: of a general rendering if the number of rays was adaptive, of
-/// a rendering by the deflection table in the images of the dots at side faces.
-/// @return error [levels at error_bit_depth()]; NaN: not measured
-double image_error_by_rays(Scene const& scene, Rendering const& rendering, double exposure_e) {
-  double const level = light_per_level(scene.setup.camera, exposure_e);
-  if (rendering.method == RenderMethod::focused_dots) {
-    std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
-    if (at_faces.empty()) return not_measured;
-    Scene by_rays = scene;
-    by_rays.dots = select_dots(scene.dots, at_faces);
-    by_rays.rays_per_dot = scene.setup.render.rays_per_dot.value_or(max_rays_per_source(scene));
-    return measure_image_error(by_rays, level);
-  }
-  bool const one_path = scene.rays_per_dot == 1;
-  if (rendering.method != RenderMethod::rays || !scene.adaptive_criteria || one_path) return not_measured;
-  return measure_image_error(scene, level);
-}
-
-}  // namespace
 
 void hash_inputs(CaseSetup& loaded) {
   std::vector<std::string> const files = loaded.document.file_names();
@@ -57,34 +33,28 @@ void hash_inputs(CaseSetup& loaded) {
   }
 }
 
-double choose_exposure(Scene const& scene, RenderedLight const& light) {
-  CameraSetup const& camera = scene.setup.camera;
-  if (camera.absolute_exposure) return scene.photon_unit * camera.noise.quantum_efficiency;
-  if (camera.exposure_e) return *camera.exposure_e;
-  return std::min(Detector::auto_exposure(camera, light.brightest()), photon_limited_exposure(scene));
-}
-
-std::string rendering_announcement(Scene const& scene, double expected_s) {
+std::string rendering_announcement(Scene const& scene, RenderPlan const& plan, double expected_s) {
   constexpr double least_announced_s = 20;
   if (!(expected_s > least_announced_s)) return {};
   return fmt::format(
       "rendering {0} {1} will take {4} {2:.0f} s on {3} threads; fewer {1}, a smaller render.rays_per_dot or a larger "
       "medium.step_mm takes less time",
       scene.source_count(), scene.setup.experiment().sources.many, expected_s, thread_count(),
-      scene.adaptive_criteria && !case_kind(scene.setup).expected_rays ? "up to" : "some");
+      plan.adaptive_criteria && !case_kind(scene.setup).expected_rays ? "up to" : "some");
 }
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
   bool const on_cpu = renderer.device() == "cpu";  // the estimate is valid for this device only
-  double const expected_s = on_cpu ? expected_render_seconds(prepared.scene, theory) / thread_count() : 0;
-  if (std::string const text = rendering_announcement(prepared.scene, expected_s); !text.empty()) {
+  double const expected_s =
+      on_cpu ? expected_render_seconds(prepared.scene, prepared.plan, theory) / thread_count() : 0;
+  if (std::string const text = rendering_announcement(prepared.scene, prepared.plan, expected_s); !text.empty()) {
     spdlog::info("{}", text);
   }
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
   stop_point("rendering");
-  rendered.rendering =
-      std::make_shared<Rendering const>(render_planned(prepared.scene, renderer, RenderImages::in_place, theory));
+  rendered.rendering = std::make_shared<Rendering const>(
+      render(prepared.scene, prepared.plan, renderer, RenderImages::in_place, theory));
   rendered.exposure_e = choose_exposure(prepared.scene, *rendered.rendering->in_place);
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
@@ -123,39 +93,36 @@ Image<std::uint16_t> grey_levels(Image<double> const& levels) {
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                        RecordedFrames const& frames, Renderer const& renderer) {
   CaseOutcome outcome;
-  std::vector<std::string>& warnings = outcome.warnings = prepared.warnings;
+  Warnings& warnings = outcome.warnings = prepared.warnings;
   if (loaded.setup.render.precision == Precision::single) {
-    warn(warnings, "render.precision = \"single\" is obsolete, and double precision is used; remove it");
+    warn(warnings, {WarningCode::obsolete, "render.precision",
+                    "\"single\" is obsolete, and double precision is used; remove it"});
   }
   Rendering const& rendering = *rendered.rendering;
   CameraSetup const& camera = prepared.scene.setup.camera;
-  bool const by_table = rendering.method == RenderMethod::focused_dots;
-  if (by_table) {
-    Scene scene = prepared.scene;
-    scene.pupil_margin = rendering.pupil_margin;
-    outcome.table_error =
-        prepared.rays.table_error ? *prepared.rays.table_error : measure_table_error(focused_dots(scene).value());
-    warn_of_table(warnings, *outcome.table_error);
-  }
+  RenderingAccuracy const accuracy =
+      measure_accuracy(prepared.scene, prepared.plan, rendering.truth, rendered.exposure_e);
+  outcome.table_error = accuracy.table;
+  outcome.image_error_levels = accuracy.image_levels;
+  if (accuracy.table) warn_of_table(warnings, *accuracy.table);
   outcome.device = rendering.device.empty() ? renderer.device() : rendering.device;
   // If the rays are chosen again, they are chosen for the same exposure, so "auto" remains.
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
-  } else if ((by_table || prepared.scene.adaptive_criteria) && !loaded.setup.render.rays_per_dot &&
+  } else if ((accuracy.table || prepared.plan.adaptive_criteria) && !loaded.setup.render.rays_per_dot &&
              !camera.exposure_e) {
     loaded.document.root().table("camera").resolve("exposure", std::string("auto"));
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
   }
   // comparison renders further points of this case by the same method
-  if (by_table || prepared.rays.method != RenderMethod::automatic) {
-    loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));
+  if (accuracy.table || prepared.plan.method != resolve_render_method(prepared.scene)) {
+    loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.plan.method)));
   }
   outcome.levels = {grey_levels(frames.levels->reference()), grey_levels(frames.levels->flow())};
   outcome.reference_sha256 = pixel_sha256(outcome.levels.reference);
   outcome.flow_sha256 = pixel_sha256(outcome.levels.flow);
   static_cast<RenderedOutcome&>(outcome) = warn_of_rendering(warnings, prepared, rendered, frames);
-  outcome.image_error_levels = image_error_by_rays(prepared.scene, rendering, rendered.exposure_e);
   // If dots at side faces are traced by rays, both errors are theirs, and one warning suffices
   bool const is_warned_of = outcome.side_faces && outcome.side_faces->truth_error_px > truth_tolerance_px;
   if (!is_warned_of) warn_of_images(warnings, camera, outcome.image_error_levels);
@@ -165,9 +132,8 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
 nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                           RecordedFrames const& frames, CaseOutcome const& outcome, std::string const& folder) {
   namespace fs = std::filesystem;
-  Scene scene = prepared.scene;
+  Scene const& scene = prepared.scene;
   Rendering const& rendering = *rendered.rendering;
-  scene.pupil_margin = rendering.pupil_margin;
   CameraSetup const& camera = scene.setup.camera;
   std::string const resolved = loaded.document.resolved();
 

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/case/plenoptic_views.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -76,11 +76,11 @@ ViewsWritten write_views(std::string const& case_folder, std::string const& fold
   }
   // The image of the stop behind a lenslet has a limited number of pixels; more views are interpolated.
   if (double const seen = written.camera.picture_px(); across > 2 * seen) {
-    spdlog::warn(
-        "--views {}: {} views of each frame will be written, although the image of the stop behind a lenslet is {:.3g} "
-        "px wide (views between pixels are interpolated and contain no new information); --views {} gives one view per "
-        "pixel",
-        across, written.views, seen, std::max(1, static_cast<int>(std::ceil(seen))));
+    log_warning({WarningCode::unsuitable, "--views",
+                 fmt::format("{} views of each frame will be written, although the image of the stop behind a lenslet "
+                             "is {:.3g} px wide (views between pixels are interpolated and contain no new "
+                             "information); --views {} gives one view per pixel",
+                             written.views, seen, std::max(1, static_cast<int>(std::ceil(seen))))});
   }
   OutputFolder output(folder, {marker, {"view_*.tif", "*_refocused.tif"}});
   output.fill([&](std::string const& place) {

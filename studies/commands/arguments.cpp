@@ -104,6 +104,11 @@ CLI::Validator non_negative_number() {
 
 std::string describe_problem(CLI::Error const& error) { return in_our_words(error.get_name(), error.what()); }
 
+std::string find_argument(CLI::Error const& error) {
+  std::string const problem = describe_problem(error);  // begins with its name
+  return problem.substr(0, problem.find_first_of(": "));
+}
+
 std::string refusal(CLI::App const* app, CLI::Error const& error) {
   std::string const message = describe_problem(error);
   return fmt::format("gladstone: {}{} See gladstone {}--help\n", message, message.ends_with('?') ? "" : ".",

@@ -17,6 +17,9 @@ CLI::Validator non_negative_number();
 /// Returns what is wrong with a command line: the option and the problem.
 std::string describe_problem(CLI::Error const& error);
 
+/// Returns the option or argument that a problem of a command line is about, such as "--threads".
+std::string find_argument(CLI::Error const& error);
+
 /// Formats the error message for an invalid command line: one line with describe_problem() and the help command.
 std::string refusal(CLI::App const* app, CLI::Error const& error);
 

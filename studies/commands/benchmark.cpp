@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,9 +12,11 @@
 #include "render/files/text_file.h"
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 
 namespace gladstone {
 namespace {
@@ -27,20 +28,22 @@ ForeignVectors parse_vectors(std::string const& given) {
   auto const equals = given.find('=');
   ForeignVectors vectors{given.substr(0, equals), equals == std::string::npos ? "" : given.substr(equals + 1)};
   if (vectors.name.empty() || vectors.path.empty())
-    throw DataError(ErrorCode::arguments, "--vectors " + given,
-                    "is not of the form NAME=F (a name for the code, and its folder of vectors); "
-                    "write --vectors mine=FOLDER");
+    throw DataError(ErrorCode::arguments, "--vectors",
+                    '"' + given +
+                        "\" is not of the form NAME=F (a name for the code, and its folder of vectors); "
+                        "write --vectors mine=FOLDER");
   if (vectors.name.find_first_of(",\n\"") != std::string::npos)
-    throw DataError(
-        ErrorCode::arguments, "--vectors " + given,
-        "has a comma, a quotation mark or a line break in its name, which would break benchmark.csv; use another name");
+    throw DataError(ErrorCode::arguments, "--vectors",
+                    '"' + given +
+                        "\" has a comma, a quotation mark or a line break in its name, which would break "
+                        "benchmark.csv; use another name");
   std::error_code error;
   if (!fs::exists(vectors.path, error))
     throw DataError(ErrorCode::missing_file, vectors.path, "does not exist; give the folder of vectors");
   for (BenchmarkEstimator const& ours : benchmark_estimators())
     if (ours.name == vectors.name)
-      throw DataError(ErrorCode::arguments, "--vectors " + given,
-                      "has the name of one of our estimators; use another name");
+      throw DataError(ErrorCode::arguments, "--vectors",
+                      '"' + given + "\" has the name of one of our estimators; use another name");
   return vectors;
 }
 
@@ -56,8 +59,8 @@ void assign_conventions(std::vector<ForeignVectors>& vectors, std::string const&
     used = true;
   }
   if (!used)
-    throw DataError(ErrorCode::arguments, "--conventions " + given,
-                    "applies to vectors of another code, but none are given; add --vectors");
+    throw DataError(ErrorCode::arguments, "--conventions",
+                    '"' + given + "\" applies to vectors of another code, but none are given; add --vectors");
 }
 
 std::vector<std::string> names_of_cases() {
@@ -106,7 +109,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
                  "NAME=F: another code's vectors, F a folder of files named after cases (vortex.csv, .txt, .h5)");
   app.add_option(
       "--conventions", arguments->conventions,
-      "Conventions of these vectors, as for gladstone compare, or NAME=WORDS for one code; default: the format's own");
+      "Conventions of --vectors, see gladstone compare --help, or NAME=WORDS for one code; default: the format's own");
   app.add_option("--cases", arguments->benchmark.cases, "Evaluate only these cases")->check(one_of(names_of_cases()));
   app.add_option("--estimators", arguments->benchmark.estimators,
                  "Evaluate only these estimators of gladstone; none: evaluate only --vectors")
@@ -153,7 +156,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
     OutputFile::write_text(in_place("benchmark.md"), page_text(page, figures, true));
     html.write(text.data(), text.size());
     html.commit();
-    for (std::string const& mistake : result.mistakes) spdlog::warn("{}", mistake);
+    for (std::string const& mistake : result.mistakes) log_warning({WarningCode::implausible, "", mistake});
     print_result(options, json, summary_of(result, benchmark.folder));
     return result.mistakes.empty() ? ok : check_missed;
   };

@@ -8,11 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "render/files/output_folder.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/command.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 
 namespace gladstone {
 namespace {
@@ -24,7 +27,7 @@ namespace fs = std::filesystem;
 std::vector<std::pair<std::string, std::string>> camera_folders(std::string const& folder) {
   require_case(folder);
   std::vector<std::pair<std::string, std::string>> folders;
-  SetupDocument const setup = SetupDocument::from_file((fs::path(folder) / case_file::setup).string());
+  SetupDocument const setup = read_setup_document((fs::path(folder) / case_file::setup).string());
   for (std::string const& name : camera_names(setup)) folders.emplace_back(name, (fs::path(folder) / name).string());
   if (folders.empty()) folders.emplace_back("", folder);
   return folders;
@@ -37,10 +40,6 @@ void write_results(std::string const& folder, Calibration const& calibration, bo
   std::string const figure = (fs::path(folder) / case_file::calibration_figure).string();
   if (draw_or_warn([&] { draw_calibration(figure, calibration); }))
     spdlog::info("drew {}", (fs::path(shown) / case_file::calibration_figure).string());
-}
-
-void log_warnings(Calibration const& calibration) {
-  for (std::string const& warning : calibration.warnings) spdlog::warn("{}", warning);
 }
 
 }  // namespace
@@ -72,7 +71,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
                                inputs);
       OutputFolder folder(place, {case_file::calibration, {case_file::calibration_figure}});
       Calibration const calibration = calibrate_images(arguments->folder, arguments->pictures);
-      log_warnings(calibration);
+      log_warnings(calibration.warnings);
       folder.fill(
           [&](std::string const& staged) { write_results(staged, calibration, !arguments->no_figures, place); });
       folder.commit();
@@ -82,7 +81,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
     auto const folders = camera_folders(arguments->folder);
     std::vector<Calibration> calibrations;
     for (auto const& [name, folder] : folders) calibrations.push_back(calibrate_case(folder));
-    for (Calibration const& calibration : calibrations) log_warnings(calibration);
+    for (Calibration const& calibration : calibrations) log_warnings(calibration.warnings);
     nlohmann::ordered_json cameras;
     std::string text;
     for (std::size_t i = 0; i < folders.size(); ++i) {

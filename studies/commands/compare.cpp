@@ -21,6 +21,8 @@
 #include "studies/compare/stereo_scores.h"
 #include "studies/compare/stored_comparison.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/comparison_figures.h"
+#include "studies/figures/draw_or_warn.h"
 
 namespace gladstone {
 

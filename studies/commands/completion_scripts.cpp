@@ -122,7 +122,7 @@ std::string zsh_options(CommandDescription const& command) {
   return text;
 }
 
-/// Returns the function of a command, after those of its sub-commands.
+/// Returns the zsh functions that complete a command: those of its sub-commands, then its own.
 std::string zsh_function(CommandDescription const& command, std::string const& global_options) {
   std::string text;
   for (CommandDescription const& one : command.commands) text += zsh_function(one, global_options);
@@ -165,7 +165,7 @@ std::string fish_options(CommandDescription const& command, std::string const& c
   return text;
 }
 
-/// Returns the lines of a command and its sub-commands.
+/// Returns the fish script's lines for a command and its sub-commands.
 std::string fish_command(CommandDescription const& command) {
   std::string const inside = command.path.empty() ? "" : fmt::format(" -n '__gladstone_begins {}'", command.path);
   std::string const directly = fmt::format(" -n '__gladstone_is {}'", command.path);

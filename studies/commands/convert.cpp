@@ -114,8 +114,9 @@ CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
          "-o,--output", conversion.output,
          fmt::format("File to write, whose ending selects the format: {}", fmt::join(vector_extensions(), ", ")))
       ->required();
-  app.add_option("--conventions", conversion.conventions,
-                 "Conventions of a file of another program, instead of those of its format, as for gladstone compare");
+  app.add_option(
+      "--conventions", conversion.conventions,
+      "Conventions of a file of another program, instead of those of its format, see gladstone compare --help");
   app.add_option("--image-rows", conversion.image_rows,
                  "Rows of the image, for files that count y upwards from its last row")
       ->check(whole_number(1, 1'000'000));
@@ -124,7 +125,7 @@ CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
                  "dots or particles; .nc and .vti always contain such a grid, by default of every pixel")
       ->check(whole_number(1, 10'000));
   app.add_flag("--exact", arguments->exact,
-               "truth.h5: traces light rays to every pixel (of --spacing), instead of every fourth and where the "
+               "truth.h5: traces light rays to every pixel (of --spacing), not only to every fourth and where the "
                "displacement is not smooth; takes about 8 times as long for 256 x 256 px");
   app.add_option("--truth-at", arguments->truth_at,
                  "Position to which the displacement at a pixel belongs: mid (midway between both frames) or reference")

@@ -1,12 +1,13 @@
 #include "studies/compare/correlate.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "analysis/correlation/pair_assessment.h"
 #include "analysis/vectors/vector_file.h"
@@ -16,6 +17,8 @@
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/case/peak_locking.h"
+#include "studies/case/warning_json.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/correlate_sequence.h"
@@ -56,17 +59,16 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       if (expanded == arguments->inputs && is_sequence(*arguments)) return run_sequence(*arguments, options);
       arguments->inputs = expanded;
     } else if (!arguments->pairing.empty()) {
-      throw DataError(ErrorCode::arguments, "correlate",
-                      "--pairing conflicts with --ensemble (which has one result for all pairs); omit one");
+      throw DataError(ErrorCode::arguments, "--pairing",
+                      "conflicts with --ensemble (which has one result for all pairs); omit one");
     }
     std::size_t const given = arguments->inputs.size();
     if (arguments->ensemble && given % 2 != 0)
       throw DataError(
-          ErrorCode::arguments, "correlate",
-          fmt::format("--ensemble got {} images (pairs of reference and flow require an even number); give pairs",
-                      given));
+          ErrorCode::arguments, "--ensemble",
+          fmt::format("got {} images (pairs of reference and flow require an even number); give pairs", given));
     if (!arguments->ensemble && given > 2)
-      throw DataError(ErrorCode::arguments, "correlate",
+      throw DataError(ErrorCode::arguments, "images",
                       fmt::format("got {} images (a measurement requires a reference and a flow frame); "
                                   "give two, or --ensemble for pairs of one displacement",
                                   given));
@@ -121,9 +123,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                    : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)});
       add_preparation(other.settings, sources);
       measurement = correlate_frames(a, b, frames, other.settings, device);
-      if (std::string advice = locking_advice(frames.reference());
-          frames_correlate(measurement.field) && !advice.empty())
-        measurement.field.warnings.push_back(std::move(advice));
+      if (auto const advice = locking_advice(frames.reference()); advice && frames_correlate(measurement.field))
+        measurement.field.warnings.push_back(*advice);
       warn_of_exchanged_frames(measurement.field, sources);
       write_vectors(written, measurement.field,
                     {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
@@ -133,12 +134,14 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     DisplacementField const& field = measurement.field;
     auto const ambiguous =
         field.ambiguous.size() - std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::none);
-    for (std::string const& warning : field.warnings) spdlog::warn("{}: {}", written, warning);
+    for (Warning const& warning : field.warnings) log_warning(at_place(written, warning));
     bool const any_valid = counts[0] + counts[1] > 0;
     if (!any_valid && field.warnings.empty()) {
-      spdlog::warn(
-          "{}: none of the {} vectors is valid; check that both frames show one scene, with dots in every window",
-          written, field.size());
+      log_warning(
+          {WarningCode::unreliable, written,
+           fmt::format(
+               "none of the {} vectors is valid; check that both frames show one scene, with dots in every window",
+               field.size())});
     }
     nlohmann::json const json{{"vectors", field.size()},
                               {"file", written},
@@ -150,7 +153,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                               {"verdict", field.verdict},
                               {"uncertainty_method", field.uncertainty_method},
                               {"uncertainty_key", field.uncertainty_key},
-                              {"warnings", field.warnings},
+                              {"warnings", to_strings(field.warnings)},
+                              {"warning_records", field.warnings},
                               {"device", measurement.device},
                               {"seconds_correlate", measurement.seconds}};
     print_result(options, json_text(json),

@@ -13,6 +13,7 @@
 #include "studies/compare/sequence.h"
 #include "studies/compare/sequence_frames.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/sequence_figure.h"
 
 namespace gladstone {

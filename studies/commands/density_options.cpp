@@ -7,10 +7,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "analysis/density/density_methods.h"
 #include "render/base/error.h"
 #include "studies/commands/arguments.h"
 
@@ -33,6 +35,15 @@ std::vector<double> parse_numbers(std::string const& text) {
     from = end + 1;
   }
   return numbers;
+}
+
+/// Lists methods with their meaning: "wls (weighted least squares) or poisson (no weights)".
+template <class Method>
+std::string describe_methods(std::span<Method const> methods) {
+  std::string text;
+  for (Method const& method : methods)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : " or ", method.name, method.meaning);
+  return text;
 }
 
 }  // namespace
@@ -93,21 +104,22 @@ void DensityArguments::add_to(CLI::App& app, std::string const& group) {
       "--scale-uncertainty", parsed_.scale_uncertainty,
       "Combined relative standard uncertainty of magnification, Z_D, Gladstone-Dale constant, pixel pitch "
       "and thickness, e.g. 0.01"));
-  add(app.add_option("--method", method_, "Integration: wls (weighted least squares) or poisson (no weights)")
-          ->check(one_of({"wls", "poisson"})));
+  add(app.add_option("--method", parsed_.method, "Integration: " + describe_methods(density::integration_methods()))
+          ->check(one_of(density::method_names(density::integration_methods()))));
   add(app.add_option("--overlap", parsed_.overlap,
                      "Overlap of the interrogation windows, 0 to below 1, which correlates the errors of the vectors; "
                      "default: from the last window of [correlate]"));
-  add(app.add_option("--deconvolve", parsed_.deconvolution_gain,
-                     "Compensate the averaging over the aperture, amplifying no wave more than this, e.g. 3"));
+  add(app.add_option(
+      "--deconvolve", parsed_.deconvolution_gain,
+      "Compensate the averaging over the aperture, with this maximum amplification of any wave, e.g. 3"));
   add(app.add_flag("--axisymmetric", axisymmetric_, "Abel inversion of an axisymmetric flow"));
   add(app.add_option("--axis", axis_,
                      "Axis of symmetry: vertical or horizontal (its position is determined), x=MM or y=MM; default "
                      "vertical"));
-  add(app.add_option("--abel", abel_, "Abel inversion: direct, or tikhonov (regularised)")
-          ->check(one_of({"direct", "tikhonov"})));
+  add(app.add_option("--abel", parsed_.abel, "Abel inversion: " + describe_methods(density::abel_methods()))
+          ->check(one_of(density::method_names(density::abel_methods()))));
   add(app.add_option("--lambda", parsed_.lambda,
-                     "Regularisation parameter of --abel tikhonov, default by cross-validation"));
+                     "Parameter of a regularised Abel inversion, default by cross-validation"));
   add(app.add_option("--samples", parsed_.samples,
                      "Number of random samples for the uncertainty of more than 4000 nodes, or with --deconvolve")
           ->check(whole_number(10, 100'000)));
@@ -116,13 +128,13 @@ void DensityArguments::add_to(CLI::App& app, std::string const& group) {
 ReconstructOptions DensityArguments::options() const {
   ReconstructOptions options = parsed_;
   for (std::string const& text : reference_) options.reference.push_back(parse_reference(text));
-  if (method_ == "poisson") options.method = density::IntegrationMethod::poisson;
-  if (abel_ == "tikhonov") options.abel = density::AbelMethod::tikhonov;
   if (axisymmetric_) options.axis = parse_axis(axis_);
   if (!axisymmetric_ && !axis_.empty())
     throw SetupError({SetupProblem{"--axis", "has no effect without --axisymmetric; add that option"}});
-  if (options.lambda && options.abel != density::AbelMethod::tikhonov)
-    throw SetupError({SetupProblem{"--lambda", "has no effect without --abel tikhonov; add that option"}});
+  if (options.lambda && !density::abel_method(options.abel).regularized)
+    throw SetupError({SetupProblem{
+        "--lambda", fmt::format("has no effect with --abel {}, which is not regularised; remove it, or use another one",
+                                options.abel)}});
   return options;
 }
 

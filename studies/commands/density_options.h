@@ -30,7 +30,7 @@ class DensityArguments {
   std::vector<std::string> words() const;
 
  private:
-  std::string method_ = "wls", axis_, abel_ = "direct";
+  std::string axis_;
   std::vector<std::string> reference_;
   ReconstructOptions parsed_;
   bool axisymmetric_ = false;

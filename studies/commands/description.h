@@ -1,6 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "studies/case/result_rows.h"
 
 namespace gladstone {
 
@@ -8,6 +11,7 @@ namespace gladstone {
 struct Description {
   std::string json;  ///< one JSON object
   std::string text;
+  std::vector<ResultRow> rows = {};  ///< quantities for --csv; empty: the results are no list of quantities
 };
 
 }  // namespace gladstone

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "render/base/error.h"
+#include "studies/case/warning_json.h"
 #include "studies/commands/run_warnings.h"
 
 namespace gladstone {
@@ -29,9 +30,11 @@ int remove_number(std::string_view& location) {
 /// Describes one problem; a location "file:line:column" or "file:line" is divided into its parts.
 Json problem_json(ErrorCode code, std::string const& message, std::string_view place, std::string const& key) {
   Json json{{"code", error_code_name(code)}, {"message", message}};
+  if (!place.empty()) json["place"] = place;
+  if (place.empty() && !key.empty()) json["place"] = key;
   bool const is_option = place.starts_with("--");  // a value such as 10:20 is not a line
   int const last = is_option ? 0 : remove_number(place), before = last > 0 ? remove_number(place) : 0;
-  if (!place.empty()) json["file"] = place;
+  if (!place.empty() && !(is_option && code == ErrorCode::arguments)) json["file"] = place;
   if (last > 0) json["line"] = before > 0 ? before : last;
   if (before > 0) json["column"] = last;
   if (!key.empty()) json["key"] = key;
@@ -55,15 +58,21 @@ Json list_problems(std::exception const& error) {
 }
 
 Json with_errors(Json errors, int exit_code) {
-  return {{"exit_code", exit_code}, {"errors", std::move(errors)}, {"warnings", recorded_warnings()}};
+  Warnings const warnings = recorded_warnings();
+  return {{"exit_code", exit_code},
+          {"errors", std::move(errors)},
+          {"warnings", to_strings(warnings)},
+          {"warning_records", warnings}};
 }
 
 }  // namespace
 
 Json error_json(std::exception const& error, int exit_code) { return with_errors(list_problems(error), exit_code); }
 
-Json argument_error_json(std::string const& message, int exit_code) {
-  return with_errors(Json::array({problem_json(ErrorCode::arguments, message, "", "")}), exit_code);
+Json argument_error_json(std::string const& place, std::string const& message, int exit_code) {
+  Json problem = problem_json(ErrorCode::arguments, message, "", "");
+  if (!place.empty()) problem["place"] = place;
+  return with_errors(Json::array({std::move(problem)}), exit_code);
 }
 
 }  // namespace gladstone

@@ -4,11 +4,11 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "render/base/units.h"
 #include "render/light/velocity_file.h"
 #include "render/medium/field_volume.h"
-#include "render/scene/field_coverage.h"
 #include "studies/case/case.h"
 
 namespace gladstone {
@@ -55,7 +55,7 @@ Vec3d extent_mm(FieldSource const& source) {
   return extent;
 }
 
-/// Returns the region of a density field with the place that a setup gives its field [m].
+/// Returns the region of a density field in the world, with the spacing and centre that the setup gives its field [m].
 Bounds<double> density_region(Setup const& setup, FieldSource const& source, FieldFile const& file) {
   MediumSetup medium = setup.medium;
   FieldSetup& field = medium.field;
@@ -68,7 +68,7 @@ Bounds<double> density_region(Setup const& setup, FieldSource const& source, Fie
   return file_bounds(medium);
 }
 
-/// Returns the region of a velocity field with the place that a setup gives its flow [m].
+/// Returns the region of a velocity field in the world, with the spacing and centre that the setup gives its flow [m].
 Bounds<double> velocity_region(Setup const& setup, FieldSource const& source, FieldFile const& file) {
   VelocityFile velocity;
   if (setup.piv && setup.piv->flow.file) velocity = *setup.piv->flow.file;
@@ -83,7 +83,7 @@ Bounds<double> velocity_region(Setup const& setup, FieldSource const& source, Fi
   return {grid.origin, high};
 }
 
-/// Returns whether the setup gives the field its spacing.
+/// Returns true if the setup specifies the spacing of the field's nodes.
 bool is_spaced(Setup const& setup, bool velocity) {
   if (!velocity) return setup.medium.field.kind == FieldKind::file && setup.medium.field.spacing.has_value();
   return setup.piv && setup.piv->flow.file && setup.piv->flow.file->spacing.has_value();
@@ -97,11 +97,6 @@ FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::st
   FieldUnits const& units = source.units();
   std::string const undefined = units.undefined(), assumed = undefined.empty() ? units.assumed() : "";
   FieldPlace place;
-  place.units = {{"length", named(units.length)},
-                 {"length_m", undefined.empty() ? nlohmann::json(units.metres()) : nlohmann::json(nullptr)},
-                 {"assumed", named(assumed)},
-                 {"unknown", named(undefined)},
-                 {"values", named(units.values)}};
   place.spacing = stated_spacing(source);
   place.spacing_text = spacing_text(source, place.spacing);
   place.extent_mm = extent_mm(source);
@@ -113,21 +108,36 @@ FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::st
                     place.extent_mm.z, values);
   } else {
     place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined, values);
-    place.warning = undefined + "; give " + spacing_key;
+    place.assumption = undefined + "; give " + spacing_key;
   }
-  if (!assumed.empty()) place.warning = assumed + "; if that is wrong, give " + spacing_key;
+  if (!assumed.empty()) place.assumption = assumed + "; if that is wrong, give " + spacing_key;
   if (setup.empty()) return place;
 
   double const mm = unit::millimetre;
   Setup const whole = load_case_setup(setup, {}).setup;
-  if (is_spaced(whole, velocity)) place.warning.clear();
-  FieldCoverage const seen =
-      field_coverage(velocity ? velocity_region(whole, source, file) : density_region(whole, source, file), whole);
-  place.coverage = {{"share", seen.share}, {"view_mm", {seen.view.x / mm, seen.view.y / mm}}, {"setup", setup}};
+  if (is_spaced(whole, velocity)) place.assumption.clear();
+  FieldCoverage const& seen = place.coverage.emplace(
+      field_coverage(velocity ? velocity_region(whole, source, file) : density_region(whole, source, file), whole));
   place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm in the view of {}", 100 * seen.share,
                             seen.view.x / mm, seen.view.y / mm, setup);
-  if (std::string const warning = seen.warning(); !velocity && !warning.empty()) place.text += "; " + warning;
+  if (auto const warning = seen.warning(); warning && !velocity) place.text += "; " + to_string(*warning);
   return place;
+}
+
+nlohmann::json units_json(FieldUnits const& units) {
+  std::string const undefined = units.undefined(), assumed = undefined.empty() ? units.assumed() : "";
+  return {{"length", named(units.length)},
+          {"length_m", undefined.empty() ? nlohmann::json(units.metres()) : nlohmann::json(nullptr)},
+          {"assumed", named(assumed)},
+          {"unknown", named(undefined)},
+          {"values", named(units.values)}};
+}
+
+nlohmann::json coverage_json(FieldPlace const& place, std::string const& setup) {
+  if (!place.coverage) return nullptr;
+  double const mm = unit::millimetre;
+  Vec2d const view = place.coverage->view;
+  return {{"share", place.coverage->share}, {"view_mm", {view.x / mm, view.y / mm}}, {"setup", setup}};
 }
 
 }  // namespace gladstone

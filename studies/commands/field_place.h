@@ -1,10 +1,12 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "render/base/vec.h"
 #include "render/files/fields/field_file.h"
+#include "render/scene/field_coverage.h"
 
 namespace gladstone {
 
@@ -14,21 +16,25 @@ struct FieldFile {
   std::string axes;  ///< world axes in the file's order; empty: the file's own
 };
 
-/// Position, extent and units of a field file, and its coverage of a setup's view.
+/// Position and extent of a field file, and its coverage of a setup's view.
 struct FieldPlace {
-  nlohmann::json units;  ///< of lengths and values, null if the file names none; `length_m`, the unit used; `unknown`
-  Vec3d spacing{};       ///< spacing as stated, in the file's unit of length; NaN: not stated, or a single node
+  Vec3d spacing{};           ///< spacing as stated, in the file's unit of length; NaN: not stated, or a single node
   std::string spacing_text;  ///< the same as readable text
   Vec3d extent_mm{};         ///< distance from the first node to the last along x, y, z [mm]; NaN: undefined
-  nlohmann::json coverage;   ///< {share, view_mm, setup}; null without a setup
-  std::string text;          ///< units, extent and coverage as readable text
-  std::string warning;       ///< assumption made about lengths, or why they are undefined; empty: neither
+  std::optional<FieldCoverage> coverage;  ///< empty without a setup
+  std::string text;                       ///< units, extent and coverage as readable text
+  std::string assumption;                 ///< assumption made about lengths, or why they are undefined; empty: neither
 };
 
 /// Determines the position and coverage of a field file.
-/// @param file   from which the source was opened
+/// @param file   file from which the source was opened
 /// @param setup  path of a setup, or empty; if its field (of a velocity: its flow) is a file too, its spacing, position
 ///               and periods are used
 FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::string const& setup);
+
+/// Returns the units of lengths and values as JSON, null if the file names none; `length_m`, the unit used; `unknown`.
+nlohmann::json units_json(FieldUnits const& units);
+/// Returns the coverage of a setup's view as JSON: {share, view_mm, setup}; null without a setup.
+nlohmann::json coverage_json(FieldPlace const& place, std::string const& setup);
 
 }  // namespace gladstone

@@ -12,8 +12,8 @@
 namespace gladstone {
 namespace {
 
-/// Largest absolute difference of each of `components` between the nodes from `a` and from `b` on.
-/// @param count  number of values, not of nodes
+/// Raises the largest absolute difference of each component by those between two rows of nodes, `a` and `b`.
+/// @param count  number of values in a row, not of nodes
 void raise_differences(double const* a, double const* b, std::size_t count, std::vector<double>& largest) {
   std::size_t const components = largest.size();
   for (std::size_t i = 0; i < count; ++i) {

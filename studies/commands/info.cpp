@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "render/base/error.h"
+#include "render/scene/setup_document.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/figure_ending.h"
@@ -14,8 +15,14 @@
 namespace gladstone {
 namespace {
 
-int print(GlobalOptions const& options, Description const& description) {
-  print_result(options, description.json, description.text);
+/// @param csv  true: prints the quantities as CSV instead of the text
+/// @throws DataError for CSV if the description has no quantities
+int print(GlobalOptions const& options, Description const& description, bool csv) {
+  if (csv && description.rows.empty()) {
+    throw DataError(ErrorCode::arguments, "info",
+                    "writes CSV for lens, mie, particles and setup only; use --json instead of --csv");
+  }
+  print_result(options, description.json, csv ? rows_csv(description.rows) : description.text);
   return ok;
 }
 
@@ -26,6 +33,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     std::string kind, file, dataset, axes, setup, figure, x, m;
     std::vector<std::string> overrides;
     LensQuestion lens;
+    bool csv = false;
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("kind", arguments->kind, "field, image, lens, mie, particles or setup")
@@ -34,7 +42,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("file", arguments->file, "Input file; for particles and setup a setup, for mie none");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
   app.add_option("--axes", arguments->axes,
-                 "World axes in the order of the field's file, the slowest first (\"zxy\"), as medium.field.axes");
+                 "World axes in the order of the field's file, the slowest first (\"zxy\"), see medium.field.axes");
   app.add_option("--setup", arguments->setup, "Setup (TOML) for which the filled fraction of the view is reported");
   app.add_option("--set", arguments->overrides,
                  "Override a key of the setup for info setup or particles: "
@@ -51,42 +59,49 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--x", arguments->x, "Size parameter pi d n / lambda of the sphere, for info mie");
   app.add_option("--m", arguments->m,
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
+  app.add_flag("--csv", arguments->csv,
+               "Print the quantities of info lens, mie, particles or setup as CSV: key, symbol, label, value, unit and "
+               "source");
   return [arguments, &options] {
     check_figure_ending(arguments->figure);
     if (arguments->kind == "mie") {
       if (!arguments->file.empty())
-        throw DataError(ErrorCode::arguments, "info mie", "reads no file; give only --x and --m");
+        throw DataError(ErrorCode::arguments, arguments->file, "is not read by info mie; give only --x and --m");
       MieQuestion mie = read_mie_question(arguments->x, arguments->m);
       mie.figure = arguments->figure;
-      return print(options, describe_mie(mie));
+      return print(options, describe_mie(mie), arguments->csv);
     }
     if (!arguments->x.empty() || !arguments->m.empty()) {
-      throw DataError(ErrorCode::arguments, "info " + arguments->kind,
-                      "has no --x and --m (they belong to info mie); remove them");
+      throw DataError(ErrorCode::arguments, arguments->x.empty() ? "--m" : "--x",
+                      "belongs to info mie, not to info " + arguments->kind + "; remove it");
     }
     if (!arguments->figure.empty() && (arguments->kind == "image" || arguments->kind == "particles")) {
-      throw DataError(ErrorCode::arguments, "info " + arguments->kind, "draws no figure; remove --figure");
+      throw DataError(ErrorCode::arguments, "--figure", "is not drawn by info " + arguments->kind + "; remove it");
     }
     if (!arguments->overrides.empty() && arguments->kind != "setup" && arguments->kind != "particles") {
-      throw DataError(ErrorCode::arguments, "info " + arguments->kind, "reads no setup; remove --set");
+      throw DataError(ErrorCode::arguments, "--set",
+                      "requires a setup, which info " + arguments->kind + " does not read; remove it");
     }
     if (arguments->file.empty())
       throw DataError(ErrorCode::arguments, "info " + arguments->kind, "requires a file; add its name");
     if (arguments->kind == "lens") {
       arguments->lens.file = arguments->file;
       arguments->lens.figure = arguments->figure;
-      return print(options, describe_lens(arguments->lens));
+      return print(options, describe_lens(arguments->lens), arguments->csv);
     }
     bool const particles = arguments->kind == "particles";
     if (particles || arguments->kind == "setup") {
-      SetupDocument setup = SetupDocument::from_file(arguments->file);
-      for (std::string const& assignment : arguments->overrides) setup.override_key(assignment);
-      return print(options, particles ? describe_particles(setup, arguments->file)
-                                      : describe_setup(setup, arguments->file, arguments->figure));
+      SetupDocument setup = read_setup_document(arguments->file, arguments->overrides);
+      return print(options,
+                   particles ? describe_particles(setup, arguments->file)
+                             : describe_setup(setup, arguments->file, arguments->figure),
+                   arguments->csv);
     }
-    if (arguments->kind == "image") return print(options, describe_image(arguments->file));
-    return print(options, describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup,
-                                         arguments->figure));
+    if (arguments->kind == "image") return print(options, describe_image(arguments->file), arguments->csv);
+    return print(
+        options,
+        describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup, arguments->figure),
+        arguments->csv);
   };
 }
 

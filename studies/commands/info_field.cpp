@@ -1,7 +1,6 @@
 #include "studies/commands/info_field.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -9,9 +8,11 @@
 #include "render/base/vec.h"
 #include "render/files/fields/field_file.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/field_place.h"
 #include "studies/commands/field_statistics.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/field_figure.h"
 
 namespace gladstone {
@@ -59,7 +60,7 @@ std::unique_ptr<FieldSource> open_scalar_or_velocity(std::string const& path, st
   }
 }
 
-/// Statistics of the components for JSON: that of a scalar field itself, an array of those of a velocity.
+/// Returns a property of the components for JSON: one value for a scalar field, an array of values for a velocity.
 template <class Value>
 nlohmann::json of_components(std::vector<FieldStatistics> const& seen, Value const& value_of) {
   if (seen.size() == 1) return value_of(seen.front());
@@ -87,16 +88,17 @@ Description describe_field(std::string const& path, std::string const& dataset, 
   RegularGrid const& grid = source->grid();
   std::vector<FieldStatistics> seen = field_statistics(*source);
   FieldPlace const place = field_place(*source, {path, dataset, axes}, setup);
-  for (FieldStatistics& one : seen) {  // per unit length, which is unknown along an axis of undefined spacing
+  for (FieldStatistics& one : seen) {  // convert differences to differences per unit length, which are unknown along an
+                                       // axis of undefined spacing
     for (int axis = 0; axis < 3; ++axis) {
       if (std::isnan(place.spacing[axis]) && std::isnan(place.extent_mm[axis]))
         one.steepest[axis] = place.spacing[axis];
     }
   }
   AxisAssignment const& reading = source->reading();
-  std::vector<std::string> const notes = source->notes();
-  for (std::string const& note : notes) spdlog::warn("{}: {}", path, note);
-  if (!place.warning.empty()) spdlog::warn("{}: {}", path, place.warning);
+  Warnings const notes = source->notes();
+  for (Warning const& note : notes) log_warning(at_place(path, note));
+  if (!place.assumption.empty()) log_warning({WarningCode::assumed, path, place.assumption});
   nlohmann::json json{
       {"dataset", source->name()},
       {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
@@ -107,10 +109,10 @@ Description describe_field(std::string const& path, std::string const& dataset, 
       {"steepest_gradient", of_components(seen, [](FieldStatistics const& one) { return json_of(one.steepest); })},
       {"axes",
        {{"order", reading.axes}, {"by", reading.by}, {"shape", reading.shape}, {"turned_round", reading.turned_round}}},
-      {"notes", notes},
-      {"units", place.units},
+      {"notes", to_strings(notes)},
+      {"units", units_json(source->units())},
       {"extent_mm", json_of(place.extent_mm)},
-      {"coverage", place.coverage}};
+      {"coverage", coverage_json(place, setup)}};
   if (!figure.empty() && draw_field(figure, *source, place)) json["figure"] = figure;
   return {json_text(json),
           fmt::format("{}: {} x {} x {} nodes, {}, {}; {}; {}", source->name(), grid.nodes[0], grid.nodes[1],

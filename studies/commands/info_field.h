@@ -6,9 +6,9 @@
 
 namespace gladstone {
 
-/// Describes a density, refractive-index or velocity field: nodes, units, extent, extremes and steepest gradient, of a
-/// velocity those of each component.
-/// @param dataset  name within the file; empty: its only one
+/// Describes a density, refractive-index or velocity field: nodes, units, extent, extremes and steepest gradient
+/// (velocity: of each component).
+/// @param dataset  name within the file; empty: the only data set
 /// @param axes     world axes in the order of the file, the slowest first; empty: the file's own
 /// @param setup    path of a setup whose view the field should cover; empty: none
 /// @param figure   file of a figure of the three planes through the middle; empty: none

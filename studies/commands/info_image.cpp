@@ -1,7 +1,6 @@
 #include "studies/commands/info_image.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,6 +11,7 @@
 #include "render/base/error.h"
 #include "studies/case/image_statistics.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -43,7 +43,8 @@ Description describe_image(std::string const& name, Image<double> const& image, 
                     fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
   }
   if (not_finite > 0) {
-    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded", name, not_finite, image.size());
+    log_warning({WarningCode::excluded, name,
+                 fmt::format("{} of {} pixels are nan or infinite, and are excluded", not_finite, image.size())});
   }
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (double const value : image) {

@@ -13,12 +13,13 @@
 #include "render/light/mie.h"
 #include "studies/case/json_text.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/mie_figure.h"
 
 namespace gladstone {
 namespace {
 
-constexpr double least_relative_index = 0.01;  // metals have at least 0.05
+constexpr double least_relative_index = 0.01;  // lower limit; metals have at least 0.05
 constexpr double most_relative_index = 100;
 
 std::optional<double> as_number(std::string_view text) {
@@ -107,21 +108,22 @@ Description describe_mie(MieQuestion const& question) {
     polarization.push_back(s11.back() > 0 ? (std::norm(amplitude.s1) - std::norm(amplitude.s2)) / (2 * s11.back())
                                           : 0.0);
   }
-  nlohmann::json json{{"x", x},
-                      {"m", {m.real(), m.imag()}},
-                      {"q_ext", q.q_ext},
-                      {"q_sca", q.q_sca},
-                      {"q_back", q.q_back},
-                      {"g", q.g},
-                      {"s11", pairs(diagram.angle_deg, s11)},
-                      {"polarization", pairs(diagram.angle_deg, polarization)}};
-  std::string text = fmt::format(
-      "sphere of x = {:.10g}, m = {:.6g} + {:.6g} i, {} terms\n"
-      "  extinction             {:.10g}\n  scattering             {:.10g}\n  absorption             {:.10g}\n"
-      "  backscattering         {:.10g}\n  mean cosine g          {:.10g}\n"
-      "  angle [deg]       |S1|^2        |S2|^2           S11  polarization\n",
-      x, m.real(), m.imag(), sphere.a().size(), q.q_ext, q.q_sca, m.imag() > 0 ? q.q_ext - q.q_sca : 0.0, q.q_back,
-      q.g);
+  char const* const source = "Bohren & Huffman 1983";
+  auto const row = [source](char const* key, char const* symbol, char const* label, double value) {
+    return ResultRow{.key = key, .symbol = symbol, .label = label, .value = value, .source = source};
+  };
+  std::vector<ResultRow> rows{row("q_ext", "Q_ext", "efficiency of extinction", q.q_ext),
+                              row("q_sca", "Q_sca", "efficiency of scattering", q.q_sca),
+                              row("q_abs", "Q_abs", "efficiency of absorption", m.imag() > 0 ? q.q_ext - q.q_sca : 0.0),
+                              row("q_back", "Q_back", "efficiency of backscattering", q.q_back),
+                              row("g", "g", "mean cosine", q.g)};
+  nlohmann::ordered_json json{{"x", x}, {"m", {m.real(), m.imag()}}};
+  json.update(rows_json(rows));
+  json["s11"] = pairs(diagram.angle_deg, s11);
+  json["polarization"] = pairs(diagram.angle_deg, polarization);
+  std::string text = fmt::format("sphere of x = {:.10g}, m = {:.6g} + {:.6g} i, {} terms\n{}", x, m.real(), m.imag(),
+                                 sphere.a().size(), rows_text(rows)) +
+                     "  angle [deg]       |S1|^2        |S2|^2           S11  polarization\n";
   std::size_t const tenth = (diagram.angle_deg.size() - 1) / 18;
   for (std::size_t i = 0; i < diagram.angle_deg.size(); i += tenth) {
     text += fmt::format("  {:>11.4g}  {:>11.6g}   {:>11.6g}   {:>11.6g}  {:>12.5f}\n", diagram.angle_deg[i],
@@ -129,7 +131,7 @@ Description describe_mie(MieQuestion const& question) {
   }
   auto const draw = [&] { draw_figure(make_mie_figure(diagram), question.figure); };
   if (!question.figure.empty() && draw_or_warn(draw)) json["figure"] = question.figure;
-  return {json_text(json), text};
+  return {json_text(json), text, std::move(rows)};
 }
 
 }  // namespace gladstone

@@ -1,10 +1,10 @@
 #include "studies/commands/info_particles.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "render/base/units.h"
 #include "studies/case/cameras.h"
@@ -12,91 +12,97 @@
 #include "studies/case/case_kind.h"
 #include "studies/case/expected_particles.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
 
-nlohmann::json spread_json(SizeSpread const& spread, double factor = 1) {
-  return {{"p05", spread.p05 * factor}, {"median", spread.median * factor}, {"p95", spread.p95 * factor}};
+constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
+constexpr char const* olsen = "Olsen & Adrian 2000, Exp. Fluids 29:S166";
+
+/// Adds the median of a quantity and the limits of 90 % of the particles.
+void add_spread(std::vector<ResultRow>& rows, std::string const& key, std::string const& label,
+                SizeSpread const& spread, double unit_value, char const* unit_name, char const* source) {
+  for (auto const& [name, words, value] : {std::tuple{"median", "median", spread.median},
+                                           {"p05", "exceeded by 95 %", spread.p05},
+                                           {"p95", "exceeded by 5 %", spread.p95}}) {
+    rows.push_back({.key = key + '.' + name,
+                    .label = label + ", " + words,
+                    .value = value / unit_value,
+                    .unit = unit_name,
+                    .source = source});
+  }
 }
 
-nlohmann::json particles_json(ExpectedParticles const& expected, CaseSetup const& loaded) {
-  nlohmann::json windows = nlohmann::json::array();
-  for (int const window : loaded.correlate.window_px) {
-    windows.push_back({window, number_or_null(expected.per_pixel * window * window)});
-  }
-  return {{"magnification", expected.magnification},
-          {"diameter_um", spread_json(expected.diameter, 1 / unit::micrometre)},
-          {"image_diameter_px", expected.image_diameter_px},
-          {"image_diameter_sheet_edge_px", expected.sheet_edge_diameter_px},
-          {"diffraction_diameter_px", expected.diffraction_px},
-          {"depth_of_field_mm", expected.depth_of_field / unit::millimetre},
-          {"particles_per_pixel", number_or_null(expected.per_pixel)},
-          {"particles_per_window", windows},
-          {"source_density", number_or_null(expected.source_density)},
-          {"photons", spread_json(expected.photons)},
-          {"electrons_peak", spread_json(expected.peak_electrons)},
-          {"full_well_e", loaded.setup.camera.noise.full_well_e},
-          {"saturated_fraction", expected.saturated},
-          {"smallest_visible_um", number_or_null(expected.smallest_visible / unit::micrometre)}};
+std::vector<ResultRow> particle_rows(ExpectedParticles const& expected, CaseSetup const& loaded) {
+  double const full_well = loaded.setup.camera.noise.full_well_e;
+  std::vector<ResultRow> rows;
+  auto const add = [&rows](char const* key, char const* symbol, std::string label, double value, char const* unit_name,
+                           char const* source = "", std::string note = "") {
+    rows.push_back({.key = key,
+                    .symbol = symbol,
+                    .label = std::move(label),
+                    .value = value,
+                    .unit = unit_name,
+                    .source = source,
+                    .note = std::move(note)});
+  };
+  add("magnification", "M", "magnification at the sheet", expected.magnification, "");
+  add_spread(rows, "diameter_um", "particle diameter", expected.diameter, unit::micrometre, "um", "setup");
+  add("image_diameter_px", "", "image diameter (e^-2)", expected.image_diameter_px, "px", olsen);
+  add("image_diameter_sheet_edge_px", "", "image diameter at the edge of the sheet", expected.sheet_edge_diameter_px,
+      "px", olsen);
+  add("diffraction_diameter_px", "d_diff", "image diameter by diffraction only", expected.diffraction_px, "px", adrian);
+  add("depth_of_field_mm", "", "depth of field", expected.depth_of_field / unit::millimetre, "mm", "Adrian 1991",
+      fmt::format("the sheet is {:.4g} mm thick", loaded.setup.piv->laser.thickness / unit::millimetre));
+  char const* const unread = std::isfinite(expected.per_pixel) ? "" : "before the file is read";
+  add("particles_per_pixel", "", "particles per pixel, within the sheet", expected.per_pixel, "", "", unread);
+  for (int const window : loaded.correlate.window_px)
+    rows.push_back({.key = fmt::format("particles_in_{}_px", window),
+                    .symbol = "N_I",
+                    .label = fmt::format("particles in {} px", window),
+                    .value = expected.per_pixel * window * window});
+  add("source_density", "N_S", "fraction of the image covered by particles", expected.source_density, "",
+      "Adrian 1991, Annu. Rev. Fluid Mech. 23:261", unread);
+  add_spread(rows, "photons", "photons through the lens", expected.photons, 1, "", "Mie");
+  add_spread(rows, "electrons_peak", "electrons at the peak", expected.peak_electrons, 1, "", "Mie");
+  add("full_well_e", "", "full well", full_well, "e", "setup");
+  add("saturated_fraction", "", "fraction of the particles that saturate", expected.saturated, "");
+  add("smallest_visible_um", "", "smallest detectable particle", expected.smallest_visible / unit::micrometre, "um",
+      "Rose 1948, J. Opt. Soc. Am. 38:196", "peak at five times its noise, up to 100 um");
+  return rows;
 }
 
-std::string particles_text(ExpectedParticles const& expected, CaseSetup const& loaded) {
-  std::string text;
-  auto const line = [&text](char const* name, std::string const& value) {
-    text += fmt::format("  {:<22}{}\n", name, value);
-  };
-  auto const spread = [](SizeSpread const& s, double factor, char const* unit_name) {
-    return fmt::format("{:.4g}{} (90 % from {:.4g} to {:.4g})", s.median * factor, unit_name, s.p05 * factor,
-                       s.p95 * factor);
-  };
-  line("magnification", fmt::format("{:.5g} at the sheet", expected.magnification));
-  line("particle diameter", spread(expected.diameter, 1 / unit::micrometre, " um"));
-  line("image diameter",
-       fmt::format("{:.3g} px (e^-2), {:.3g} px at the edge of the sheet; diffraction only {:.3g} px",
-                   expected.image_diameter_px, expected.sheet_edge_diameter_px, expected.diffraction_px));
-  line("depth of field", fmt::format("{:.4g} mm (the sheet is {:.4g} mm thick)", expected.depth_of_field * 1e3,
-                                     loaded.setup.piv->laser.thickness * 1e3));
-  if (std::isfinite(expected.per_pixel)) {
-    line("particles per pixel", fmt::format("{:.4g} within the sheet's thickness (source density {:.3g})",
-                                            expected.per_pixel, expected.source_density));
-    std::string windows;
-    for (int const window : loaded.correlate.window_px) {
-      windows +=
-          fmt::format("{}{:.3g} in {} px", windows.empty() ? "" : ", ", expected.per_pixel * window * window, window);
-    }
-    line("particles per window", windows);
-  } else {
-    line("particles per window", "unknown before the file is read");
-  }
-  line("photons", spread(expected.photons, 1, "") + " through the lens");
-  line("electrons at the peak",
-       spread(expected.peak_electrons, 1, "") + fmt::format(" of {:.5g}", loaded.setup.camera.noise.full_well_e));
-  line("saturated", fmt::format("{:.3g} % of particles", 100 * expected.saturated));
-  line("smallest seen", std::isfinite(expected.smallest_visible)
-                            ? fmt::format("{:.3g} um (peak at five times its noise)", expected.smallest_visible * 1e6)
-                            : std::string("none up to 100 um"));
-  return text;
+/// Returns the rows as JSON, with the particles per window also as pairs of window size and number.
+nlohmann::ordered_json particles_json(std::vector<ResultRow> const& rows, ExpectedParticles const& expected,
+                                      CaseSetup const& loaded) {
+  nlohmann::ordered_json json = rows_json(rows);
+  for (int const window : loaded.correlate.window_px)
+    json["particles_per_window"].push_back({window, number_or_null(expected.per_pixel * window * window)});
+  return json;
 }
 
 }  // namespace
 
 Description describe_particles(SetupDocument const& setup, std::string const& name) {
   std::string text;
-  nlohmann::json cameras = nlohmann::json::object(), only;
+  std::vector<ResultRow> all;
+  nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
   for (CameraCase& camera : camera_cases(setup)) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
     require_experiment(loaded.setup, piv_experiment, name,
                        "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
-    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    log_warnings(loaded.warnings);
     ExpectedParticles const expected = expected_particles(loaded.setup);
     text += fmt::format("{}{}\n", name, camera.name.empty() ? "" : ", camera " + camera.name);
-    text += particles_text(expected, loaded);
-    only = particles_json(expected, loaded);
+    std::vector<ResultRow> const rows = particle_rows(expected, loaded);
+    text += rows_text(rows);
+    only = particles_json(rows, expected, loaded);
+    append_rows(all, rows, camera.name);
     if (!camera.name.empty()) cameras[camera.name] = only;
   }
-  nlohmann::json const json = cameras.empty() ? only : nlohmann::json{{"cameras", cameras}};
-  return {json_text(json), text};
+  nlohmann::ordered_json const json = cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}};
+  return {json_text(json), text, std::move(all)};
 }
 
 }  // namespace gladstone

@@ -1,18 +1,19 @@
 #include "studies/commands/info_setup.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/design/setup_overview.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/report/layout_view.h"
 
@@ -32,7 +33,7 @@ bool draw_setup(std::string const& path, CaseSetup loaded) {
   Setup const setup = loaded.setup;
   return draw_or_warn([&] {
     auto const view = layout_view(std::move(loaded));
-    draw_figure(view ? make_layout_figure(*view) : make_camera_layout_figure(setup), path);
+    draw_figure(view ? make_view_figure(*view) : make_camera_layout_figure(setup), path);
   });
 }
 
@@ -40,16 +41,20 @@ bool draw_setup(std::string const& path, CaseSetup loaded) {
 
 Description describe_setup(SetupDocument const& setup, std::string const& name, std::string const& figure) {
   std::string text;
+  std::vector<ResultRow> rows;
   nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
-  std::set<std::string> warned;  // several cameras may have the same warnings
-  auto const warn_once = [&warned](std::string const& warning) {
-    if (warned.insert(warning).second) spdlog::warn("{}", warning);
+  Warnings warned;  // several cameras may have the same warnings
+  auto const warn_once = [&warned](Warnings const& warnings) {
+    for (Warning const& warning : warnings) {
+      if (std::find(warned.begin(), warned.end(), warning) != warned.end()) continue;
+      log_warning(warned.emplace_back(warning));
+    }
   };
   for (CameraCase& camera : camera_cases(setup)) {
     std::string const path = figure_of_camera(figure, camera.name);
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
-    for (std::string const& warning : loaded.warnings) warn_once(warning);
-    for (std::string const& warning : list_neglected_effects(loaded.setup)) warn_once(warning);
+    warn_once(loaded.warnings);
+    warn_once(list_neglected_effects(loaded.setup));
     SetupOverview const overview = make_setup_overview(loaded.copy());
     only = overview_json(overview);
     text += fmt::format("{}{}: {}\n{}", name, camera.name.empty() ? "" : ", camera " + camera.name, overview.experiment,
@@ -58,11 +63,12 @@ Description describe_setup(SetupDocument const& setup, std::string const& name, 
       only["figure"] = path;
       text += fmt::format("  figure: {}\n", path);
     }
+    append_rows(rows, overview.rows, camera.name);
     if (!camera.name.empty()) cameras[camera.name] = only;
   }
   if (figure.empty()) text += fmt::format("to draw the layout: gladstone info setup {} --figure layout.png\n", name);
   nlohmann::ordered_json const json = cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}};
-  return {json_text(json), text};
+  return {json_text(json), text, std::move(rows)};
 }
 
 }  // namespace gladstone

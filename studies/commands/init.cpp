@@ -16,8 +16,8 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/embedded_text.h"
 #include "studies/commands/setup_keys.h"
-#include "studies/report/embedded_text.h"
 
 namespace gladstone {
 namespace {
@@ -42,7 +42,7 @@ constexpr std::array templates{
     Template{"design", &embedded::template_design, "schema = 1\nexperiment = \"bos\"\n"},
 };
 
-/// @throws DataError if there is no such kind
+/// @throws DataError for an unknown kind
 Template const& find_template(std::string const& kind) {
   auto const found =
       std::find_if(templates.begin(), templates.end(), [&](Template const& one) { return kind == one.kind; });
@@ -56,7 +56,7 @@ Template const& find_template(std::string const& kind) {
 
 /// Returns a line of the complete list: the commented key with its default, unit, values and meaning. Keys without a
 /// default in TOML have "..." in place of the value.
-/// @param name  of the key below the heading of its table
+/// @param name  name of the key below the heading of its table
 std::string commented_key(SetupKey const& key, std::string const& name) {
   std::string text = fmt::format("# {} = {}  #", name, key.default_value.empty() ? "..." : key.default_value);
   if (!key.unit.empty()) text += " [" + key.unit + ']';
@@ -70,7 +70,7 @@ std::string commented_key(SetupKey const& key, std::string const& name) {
 /// Table of a TOML text without comment lines.
 struct GivenTable {
   std::string heading;             ///< "[lens]", "[[camera]]"; empty: top level
-  std::vector<std::string> lines;  ///< its keys, with comments
+  std::vector<std::string> lines;  ///< lines of the table's keys, with comments
 
   bool has(std::string const& key) const {
     return std::any_of(lines.begin(), lines.end(), [&](auto const& line) { return line.starts_with(key + " ="); });
@@ -89,7 +89,8 @@ std::vector<GivenTable> tables_of(std::string_view text) {
   return tables;
 }
 
-/// Returns the keys of all cameras of a setup: those that are given, and after the first camera all others.
+/// Returns the tables [[camera]] with the keys that are given, and below the keys of the first camera all other keys,
+/// commented out.
 std::string list_cameras(std::vector<GivenTable> const& given, std::vector<SetupKeyTable> const& tables) {
   std::string text;
   for (GivenTable const& camera : given) {

@@ -5,11 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "render/base/nearest_name.h"
 #include "studies/case/json_text.h"
 #include "studies/commands/command.h"
-#include "studies/commands/setup_keys.h"
 
 namespace gladstone {
 namespace {
@@ -79,16 +79,19 @@ std::string to_text(SetupKey const& key, SetupKeyTable const& table) {
 
 FoundKeys find_keys(std::string const& pattern) {
   FoundKeys found;
-  found.keys = nlohmann::ordered_json::array();
   for (SetupKeyTable const& table : setup_key_tables()) {
     for (SetupKey const& key : table.keys) {
-      if (!matches(key.path, pattern)) continue;
-      found.keys.push_back(to_json(key, table));
-      found.text += to_text(key, table);
+      if (matches(key.path, pattern)) found.keys.push_back({&table, &key});
     }
   }
   if (found.keys.empty()) found.similar = similar_keys(pattern);
   return found;
+}
+
+nlohmann::ordered_json keys_json(FoundKeys const& found) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (FoundKeys::Key const& one : found.keys) json.push_back(to_json(*one.key, *one.table));
+  return json;
 }
 
 CommandBody attach_keys(CLI::App& app, GlobalOptions const& options) {
@@ -97,9 +100,11 @@ CommandBody attach_keys(CLI::App& app, GlobalOptions const& options) {
                  "Part of a key's path (f_number, medium.field), or a whole path with wildcards: 'camera.*_um'");
   return [pattern, &options] {
     FoundKeys const found = find_keys(*pattern);
-    nlohmann::ordered_json result{{"keys", found.keys}};
+    nlohmann::ordered_json result{{"keys", keys_json(found)}};
     if (!found.keys.empty()) {
-      print_result(options, json_text(result), found.text);
+      std::string text;
+      for (FoundKeys::Key const& one : found.keys) text += to_text(*one.key, *one.table);
+      print_result(options, json_text(result), text);
       return ok;
     }
     std::vector<std::string> const& similar = found.similar;

@@ -3,25 +3,28 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/case/json_text.h"
+#include "studies/case/warning_json.h"
 #include "studies/commands/command.h"
 #include "studies/commands/run_warnings.h"
 
 namespace gladstone {
 namespace {
 
-/// Appends the warnings of the run to the member "warnings" of a JSON object.
+/// Appends the warnings of the run to the members "warnings" and "warning_records" of a JSON object.
 std::string with_warnings(std::string const& json) {
   nlohmann::ordered_json all = nlohmann::ordered_json::parse(json, nullptr, false);
   if (!all.is_object()) return json;
   nlohmann::ordered_json& warnings = all["warnings"];
   if (!warnings.is_array()) warnings = nlohmann::ordered_json::array();
-  for (std::string const& text : recorded_warnings()) {
-    // Skip warnings that the command already lists; in the log, the name of a file may precede them.
-    auto const listed = [&text](nlohmann::ordered_json const& one) {
-      return one.is_string() && text.ends_with(one.get_ref<std::string const&>());
-    };
-    if (std::none_of(warnings.begin(), warnings.end(), listed)) warnings.push_back(text);
+  Warnings all_of_run = read_warnings(all);
+  for (Warning const& logged : recorded_warnings()) {
+    // Skip warnings that the command already lists; in the log, the name of a file may precede their place.
+    auto const listed = [&logged](Warning const& one) { return one.code == logged.code && one.text == logged.text; };
+    if (std::any_of(all_of_run.begin(), all_of_run.end(), listed)) continue;
+    all_of_run.push_back(logged);
+    warnings.push_back(to_string(logged));
   }
+  all["warning_records"] = all_of_run;
   return json_text(all);
 }
 

@@ -17,6 +17,7 @@
 #include "studies/compare/density_table.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/density_figure.h"
+#include "studies/figures/draw_or_warn.h"
 
 namespace gladstone {
 namespace {
@@ -43,7 +44,7 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
                  "File for the density, .h5, .nc, .vti, .mat or .csv; the figure has the same name with .png")
       ->required();
   app.add_option("--vectors", arguments->vectors, "Vectors of gladstone or another program, default CASE/vectors.h5");
-  app.add_option("--conventions", arguments->conventions, "Conventions of that file, see gladstone compare --help");
+  app.add_option("--conventions", arguments->conventions, "Conventions of --vectors, see gladstone compare --help");
   arguments->density.add_to(app);
   app.add_flag("--budget", arguments->budget,
                "Split the error of a rendered case into its causes, from the comparison of the vectors with truth and "

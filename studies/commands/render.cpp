@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -10,12 +9,14 @@
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
 #include "render/method.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/json_text.h"
 #include "studies/case/preview.h"
 #include "studies/case/render_sequence.h"
 #include "studies/case/render_setup.h"
 #include "studies/case/sequence_pair.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/command.h"
 
 namespace gladstone {
@@ -63,7 +64,7 @@ struct RenderArguments {
   bool preview = false;
 };
 
-/// Describes a preview and what it leaves out.
+/// Describes a preview and the results that it omits.
 std::string preview_text(CasePreview const& preview, CameraSetup const& camera, std::string const& path) {
   std::string text = fmt::format(
       "{}: {} x {} of {} x {} px, from column {} and row {} on, {}; {} light sources traced in {:.2f} s\n", path,
@@ -103,7 +104,7 @@ int render_previews(RenderArguments const& arguments, GlobalOptions const& optio
   nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
   for (CameraCase& camera : camera_cases(document)) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
-    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    log_warnings(loaded.warnings);
     std::filesystem::path path = output;
     if (!camera.name.empty()) path.replace_filename(output.stem().string() + '_' + camera.name + ".png");
     OutputFile file(path.string(), "PNG");
@@ -125,8 +126,8 @@ void render_sequence(SetupDocument setup, std::string const& path, std::string c
   sequence.refuse_over_inputs(folder);
   auto const renderer = options.open_device().renderer;
   RenderedSequence const rendered = sequence.render(*renderer, folder, !options.quiet);
-  for (std::string const& warning : rendered.warnings) spdlog::warn("{}", warning);
-  print_result(options, json_text(rendered.summary),
+  log_warnings(rendered.warnings);
+  print_result(options, rendered.summary,
                fmt::format("{}: {} frames, {} pairs ({} by an earlier run), {:.2f} s", folder, rendered.frames,
                            rendered.pairs, rendered.resumed, rendered.seconds));
 }

@@ -1,13 +1,12 @@
 #include "studies/report/report.h"
 
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
@@ -37,14 +36,14 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   app.add_option("folder", arguments->report.source, "RUN of a study, or CASE")->required();
   app.add_option("-o,--output", arguments->report.output, "File, default report.html (report.md) in the folder");
   app.add_option("--format", arguments->format,
-                 "html (one file, works offline), or md, also by an --output that ends in .md")
+                 "html (one file that works offline) or md; an --output that ends in .md also selects md")
       ->check(one_of({"html", "md"}))
       ->capture_default_str();
-  app.add_option("--vectors", arguments->report.vectors, "For a CASE: vectors, as for gladstone compare");
+  app.add_option("--vectors", arguments->report.vectors, "For a CASE: file of vectors, see gladstone compare --help");
   app.add_option("--repeats", arguments->report.repeats,
                  "For a measured CASE: repeated measurements of the same field, for a type A evaluation");
   app.add_option("--conventions", arguments->report.conventions,
-                 "For a CASE: conventions of its vectors, as for gladstone compare");
+                 "For a CASE: conventions of its vectors, see gladstone compare --help");
   app.add_option("--figures", arguments->report.figures, "Folder for the figures as separate files");
   app.add_option("--figure-format", arguments->report.figure_format, "png, svg or pdf")
       ->check(one_of({"png", "svg", "pdf"}))
@@ -64,10 +63,10 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
     }
     WrittenReport const written = write_report(report, options.open_device());
     for (std::string const& file : written.doubtful) {
-      spdlog::warn(
-          "{}: the vectors of this file are incomplete, or their axes and signs were probably misread, so that the "
-          "report is doubtful (reasons above); export them again, or state their axes and signs with --conventions",
-          file);
+      log_warning(
+          {WarningCode::unreliable, file,
+           "the vectors of this file are incomplete, or their axes and signs were probably misread, so that the report "
+           "is doubtful (reasons above); export them again, or state their axes and signs with --conventions"});
     }
     print_result(options,
                  json_text(nlohmann::json{

@@ -7,25 +7,27 @@
 #include <memory>
 #include <mutex>
 
+#include "studies/case/warning_log.h"
+
 namespace gladstone {
 namespace {
 
 class WarningSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
-  std::vector<std::string> texts() {
+  Warnings warnings() {
     std::lock_guard const lock(mutex_);
-    return texts_;
+    return warnings_;
   }
 
  private:
-  void sink_it_(spdlog::details::log_msg const& message) override {
-    if (message.level != spdlog::level::warn) return;
-    std::string text(message.payload.data(), message.payload.size());
-    if (std::find(texts_.begin(), texts_.end(), text) == texts_.end()) texts_.push_back(std::move(text));
+  void sink_it_(spdlog::details::log_msg const& /*message*/) override {
+    Warning const* const warning = warning_being_logged();
+    if (!warning || std::find(warnings_.begin(), warnings_.end(), *warning) != warnings_.end()) return;
+    warnings_.push_back(*warning);
   }
   void flush_() override {}
 
-  std::vector<std::string> texts_;
+  Warnings warnings_;
 };
 
 std::shared_ptr<WarningSink> const& sink() {
@@ -37,6 +39,6 @@ std::shared_ptr<WarningSink> const& sink() {
 
 void record_warnings(spdlog::logger& log) { log.sinks().push_back(sink()); }
 
-std::vector<std::string> recorded_warnings() { return sink()->texts(); }
+Warnings recorded_warnings() { return sink()->warnings(); }
 
 }  // namespace gladstone

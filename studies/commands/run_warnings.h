@@ -1,7 +1,6 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include "render/base/warning.h"
 
 namespace spdlog {
 class logger;
@@ -13,6 +12,6 @@ namespace gladstone {
 void record_warnings(spdlog::logger& log);
 
 /// Returns the distinct warnings recorded so far, in their order.
-std::vector<std::string> recorded_warnings();
+Warnings recorded_warnings();
 
 }  // namespace gladstone

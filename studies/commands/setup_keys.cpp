@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "render/base/text.h"
-#include "studies/report/embedded_text.h"
+#include "studies/commands/embedded_text.h"
 
 namespace gladstone {
 namespace {

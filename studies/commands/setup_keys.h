@@ -30,8 +30,8 @@ struct SetupKeyTable {
 };
 
 /// Parses a page of tables with the columns key, unit, default, values and meaning. A section counts if its heading is
-/// followed by a line "Kinds: ..."; its heading is the table in backticks, then optionally a comma and the condition. A
-/// key whose meaning ends with "BOS only" applies to those of these kinds that are BOS.
+/// followed by a line "Kinds: ..."; its heading is the table in backticks, then optionally a comma and the condition.
+/// If the meaning of a key ends with "BOS only", the key applies only to the kinds of its table that are BOS.
 std::vector<SetupKeyTable> parse_key_tables(std::string_view page);
 
 /// Returns the tables of docs/reference/setup.md, which the build embeds in the program.

@@ -15,6 +15,7 @@
 #include "studies/commands/command.h"
 #include "studies/compare/stereo_file.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/stereo_figure.h"
 
 namespace gladstone {
@@ -54,7 +55,7 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
                  "Case folder of the first camera, with vectors.h5, or a file of vectors of gladstone or another "
                  "program; without second the folder of a case with two cameras")
       ->required();
-  app.add_option("second", given.inputs[1], "The same of the second camera");
+  app.add_option("second", given.inputs[1], "Case folder or file of vectors of the second camera");
   app.add_option("-o,--output", arguments->output,
                  "File for the three components, .h5; the figure has the same name with .png")
       ->required();
@@ -89,7 +90,7 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
                  "independent errors; default: the last window of [correlate]")
       ->check(non_negative_number());
   app.add_option("--residual-limit", given.residual_limit,
-                 "Largest residual of the four equations, in standard uncertainties: vectors of larger ones are "
+                 "Largest residual of the four equations, in standard uncertainties: vectors with a larger one are "
                  "rejected, default 4; 0: accept all")
       ->check(non_negative_number());
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figure");

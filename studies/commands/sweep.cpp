@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -7,8 +6,10 @@
 #include <numeric>
 
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/command.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/study_figures.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/dataset.h"
@@ -54,7 +55,7 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
     check_plan_folder(arguments->run, read);
     std::string const device = options.device == "auto" ? options.open_device().name() : options.device;
     StudyPlan const plan = plan_study(std::move(read), device);
-    for (std::string const& warning : plan.warnings()) spdlog::warn("{}", warning);
+    log_warnings(plan.warnings());
     StudyFile const& study = plan.study();
     PlanOutcome const planned = write_plan(arguments->run, plan);
     nlohmann::ordered_json json{{"run", arguments->run},
@@ -112,11 +113,14 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
                  "Pack images and true displacements of the cases that were run with --keep-images into one HDF5 file");
   return [arguments, &options] {
     std::string const& run = arguments->run;
-    if (!arguments->dataset.empty()) refuse_files_of_study(run, arguments->dataset);  // before anything is written
+    if (!arguments->dataset.empty())
+      refuse_files_of_study(run, arguments->dataset);  // check the path before anything
+                                                       // is written
     StudyTable const table = collect_study(run);
     if (table.builds.size() > 1) {
-      spdlog::warn("{}: the cases were computed by {} builds of gladstone ({}), whose numbers may differ", run,
-                   table.builds.size(), fmt::join(table.builds, ", "));
+      log_warning({WarningCode::inconsistent, run,
+                   fmt::format("the cases were computed by {} builds of gladstone ({}), whose numbers may differ",
+                               table.builds.size(), fmt::join(table.builds, ", "))});
     }
     Manifest const cases = read_manifest(run);
     RunState const state = determine_run_state(run, cases, all_of(cases));
@@ -132,8 +136,10 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     std::vector<std::size_t> const warned = table.warned();
     json["warned"] = warned.size();
     if (!warned.empty()) {
-      spdlog::warn("{}: {} of {} cases have warnings, see {}/cases/*.json; case {}: {}", run, warned.size(),
-                   table.rows.size(), run, table.rows[warned.front()].index, table.first_warning);
+      log_warning(
+          {table.first_warning->code, run,
+           fmt::format("{} of {} cases have warnings, see {}/cases/*.json; case {}: {}", warned.size(),
+                       table.rows.size(), run, table.rows[warned.front()].index, to_string(*table.first_warning))});
     }
     std::vector<StudyRanking> const rankings = rank_points(table);
     if (options.json) json["ranking"] = ranking_json(table, rankings);  // with all points

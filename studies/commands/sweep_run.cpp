@@ -17,6 +17,7 @@
 #include "render/base/progress.h"
 #include "render/files/stop_point.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/sweep_slurm.h"
 #include "studies/sweep/run.h"
@@ -29,7 +30,7 @@ namespace {
 struct Arguments {
   std::string run, shard;
   RunSelection selection;
-  int jobs = 0;         ///< 0: one process, or one per GPU; with --devices two per GPU
+  int jobs = 0;         ///< number of worker processes; 0: one, or one per GPU; with --devices two per GPU
   std::string devices;  ///< "all" or the number of GPUs to use; empty: all, one process each
   int worker = -1;      ///< file descriptor to which a worker reports finished cases; -1: not a worker
   double first = 0;     ///< fraction of the selection at which a worker starts
@@ -136,12 +137,14 @@ int run_in_workers(Arguments const& arguments, Manifest const& cases, std::strin
   auto const restart = [&](WorkerEnd const& end) {
     std::string const signal = fmt::format("ended by signal {} ({})", end.signal, ::strsignal(end.signal));
     if (!end.at) {
-      spdlog::warn("a worker was {} between two cases and is not started again", signal);
+      log_warning(
+          {WarningCode::failed, "", fmt::format("a worker was {} between two cases and is not started again", signal)});
       return false;
     }
     bool const twice = ++deaths[*end.at] >= 2;
-    spdlog::warn("a worker was {} while computing case {}; {}", signal, *end.at,
-                 twice ? "the case has failed" : "another worker tries it once more");
+    log_warning({WarningCode::failed, "",
+                 fmt::format("a worker was {} while computing case {}; {}", signal, *end.at,
+                             twice ? "the case has failed" : "another worker tries it once more")});
     // The system terminates processes that use too much memory by SIGKILL.
     if (twice &&
         record_failure(arguments.run, cases, *end.at, "its process was " + signal + ", twice", end.signal == SIGKILL)) {
@@ -190,8 +193,9 @@ int submit_study(Arguments const& arguments, GlobalOptions const& options, Manif
     return one.find("gpu") != std::string::npos;
   });
   if (device == "cuda" && !asks_for_gpu)
-    spdlog::warn(
-        "the study was planned for cuda, but no GPU is requested; use --gres gpu:1, unless every node has one anyway");
+    log_warning({WarningCode::inconsistent, "",
+                 "the study was planned for cuda, but no GPU is requested; use --gres gpu:1, unless every node has one "
+                 "anyway"});
   if (arguments.jobs > 0) given.run.insert(given.run.end(), {"--jobs", std::to_string(arguments.jobs)});
   if (!arguments.devices.empty()) given.run.insert(given.run.end(), {"--devices", arguments.devices});
   if (arguments.selection.keep_images) given.run.emplace_back("--keep-images");

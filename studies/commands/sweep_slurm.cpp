@@ -1,7 +1,6 @@
 #include "studies/commands/sweep_slurm.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -23,7 +23,7 @@ void add_slurm_options(CLI::App& app, SlurmArguments& arguments);
 
 /// Finished job: its number and a report about the tasks with unfinished cases.
 struct JobReport {
-  std::string job;  ///< empty: --dry-run
+  std::string job;  ///< number of the job; empty: --dry-run
   std::string text;
 };
 

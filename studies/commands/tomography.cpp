@@ -21,6 +21,7 @@
 #include "studies/compare/tomography_file.h"
 #include "studies/compare/tomography_plan.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/tomography_figure.h"
 
 namespace gladstone {
@@ -62,9 +63,10 @@ void add_input_options(CLI::App& app, TomographyArguments& given) {
                  "right, y up; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--reference-density", given.tomography.reference_density,
-                 "Density there and outside of the volume [kg/m^3], default medium.ambient_density_kg_m3");
-  app.add_option("--views", given.views,
-                 "Write the setups of this number of views of the field of one setup, instead of a reconstruction")
+                 "Density in this region and outside of the volume [kg/m^3], default medium.ambient_density_kg_m3");
+  app.add_option(
+         "--views", given.views,
+         "Write this number of setups that view the field of one setup from different directions; no reconstruction")
       ->check(whole_number(3, 16));
 }
 

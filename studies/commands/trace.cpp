@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/case/ray_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 
@@ -40,21 +40,21 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     std::vector<Ray<double>> const rays = read_rays(arguments->rays, loaded.setup.max_off_axis_distance());
     stop_point("tracing-rays");
     if (options.device == "cuda") throw DeviceError("trace: traces its few rays on the CPU; use --device cpu or auto");
-    for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
-    Scene scene = build_scene(loaded.setup);
-    for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);
-    scene = with_chosen_step(std::move(scene));
+    log_warnings(loaded.warnings);
+    Scene const scene = build_scene(loaded.setup);
+    log_warnings(scene.medium.warnings);
+    double const step = plan_step(scene).step;
     Through const through = arguments->through == "medium"   ? Through::medium
                             : arguments->through == "optics" ? Through::optics
                                                              : Through::all;
-    std::vector<TracedRay> const traced = trace_rays(scene, rays, through);
+    std::vector<TracedRay> const traced = trace_rays(scene, step, rays, through);
     std::string const text_of_rays = traced_rays_csv(traced);
     output.write(text_of_rays.data(), text_of_rays.size());
     sources.check();
     output.commit();
     std::size_t counts[ray_status_count] = {};
     for (TracedRay const& ray : traced) ++counts[static_cast<int>(ray.status)];
-    nlohmann::json json{{"file", arguments->output}, {"rays", traced.size()}, {"step_mm", scene.step * 1e3}};
+    nlohmann::json json{{"file", arguments->output}, {"rays", traced.size()}, {"step_mm", step * 1e3}};
     std::string text = fmt::format("{}: {} rays", arguments->output, traced.size());
     for (int status = 0; status < ray_status_count; ++status) {
       char const* const word = to_string(static_cast<RayStatus>(status));

@@ -7,6 +7,7 @@
 #include "render/base/contracts.h"
 #include "render/files/fields/field_file.h"
 #include "render/planning.h"
+#include "render/render.h"
 
 namespace gladstone {
 namespace {
@@ -91,9 +92,9 @@ PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Rend
         for (int i = 0; i < dots; ++i)
           scene.dots.centre.push_back({pitch * (i - 0.5 * (dots - 1)), pitch * (j - 0.5 * (dots - 1))});
       }
-      scene = with_chosen_step(std::move(scene));
-      scene.rays_per_dot = *setup.render.rays_per_dot;
-      GroundTruth const truth = renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::yes).truth;
+      RenderPlan plan = plan_step(scene);
+      plan.rays = *setup.render.rays_per_dot;
+      GroundTruth const truth = render(scene, plan, renderer, RenderImages::no, RenderTheory::yes).truth;
       for (int j = 0; j < dots; ++j) {
         for (int i = 0; i < dots; ++i) {
           int const piece_row = (row * dots + j) * pieces_across / dots_across;

@@ -22,7 +22,7 @@ std::vector<BudgetStage> budget_differences(Comparison const& comparison) {
                                       terms = budget_term_names(comparison.chain);
   std::vector<BudgetStage> differences;
   BudgetStage const* before = nullptr;
-  std::size_t first_term = 0;  // index of the term between that stage and the next one of the full chain
+  std::size_t first_term = 0;  // index of the first error source behind the stage `before` in the full chain
   for (std::size_t i = 0; i < chain.size(); ++i) {
     auto const here = std::find_if(stages.begin(), stages.end(), [&](BudgetStage const& stage) {
       return stage.name == chain[i] && !stage.displacement_px.empty();

@@ -11,6 +11,7 @@
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 #include "studies/case/case_kind.h"
@@ -100,10 +101,10 @@ Image<double> read_plane(Calibration& calibration, Setup const& setup, std::stri
   if (count_not_finite(picture) > 0)
     throw DataError(ErrorCode::invalid_value, file, "has pixels that are nan or infinite; export it again");
   if (metadata.orientation != 1) {
-    calibration.warnings.push_back(
-        fmt::format("{} is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry is "
-                    "wrong, write the image without it",
-                    file, metadata.orientation));
+    calibration.warnings.push_back({WarningCode::assumed, file,
+                                    fmt::format("is stored rotated or mirrored (Orientation {}), and was rotated "
+                                                "upright; if that entry is wrong, write the image without it",
+                                                metadata.orientation)});
   }
   calibration.columns = picture.columns();
   calibration.rows = picture.rows();
@@ -121,15 +122,17 @@ void warn_of_assignment(Calibration& calibration, AssignedDots const& assigned, 
   int const columns = 2 * grid.half_columns + 1, rows = 2 * grid.half_rows + 1;
   if (assigned.columns > columns || assigned.rows > rows) {
     calibration.warnings.push_back(
-        fmt::format("{}: {} x {} dots are seen, but calibration.extent_mm and spacing_mm define {} x {}; correct "
-                    "these, since the edges determine the middle of the grid",
-                    file, assigned.columns, assigned.rows, columns, rows));
+        {WarningCode::inconsistent, file,
+         fmt::format("{} x {} dots are seen, but calibration.extent_mm and spacing_mm define {} x {}; correct these, "
+                     "since the edges determine the middle of the grid",
+                     assigned.columns, assigned.rows, columns, rows)});
   }
   if (assigned.middle_by == CentreDotMethod::expected_view && assigned.middle_offset > doubtful) {
     calibration.warnings.push_back(
-        fmt::format("{}: the middle dot is a guess: the camera of the setup sees the middle {:.2f} spacings from it; "
-                    "give the position of the camera more accurately, or show the whole grid",
-                    file, assigned.middle_offset));
+        {WarningCode::assumed, file,
+         fmt::format("the middle dot is a guess: the camera of the setup sees the middle {:.2f} spacings from it; give "
+                     "the position of the camera more accurately, or show the whole grid",
+                     assigned.middle_offset)});
   }
 }
 
@@ -238,7 +241,7 @@ Calibration calibrate_case(std::string const& folder) {
 }
 
 Calibration calibrate_images(std::string const& setup, std::vector<std::string> const& pictures) {
-  SetupDocument document = SetupDocument::from_file(setup);
+  SetupDocument document = read_setup_document(setup);
   if (std::vector<std::string> const cameras = camera_names(document); !cameras.empty()) {
     throw DataError(ErrorCode::wrong_format, setup,
                     fmt::format("has {} cameras ({}), but the images belong to one; keep only its [[camera]], "

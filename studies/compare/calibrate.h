@@ -9,6 +9,7 @@
 #include "analysis/calibration/grid_assignment.h"
 #include "analysis/calibration/pinhole_fit.h"
 #include "analysis/calibration/soloff_fit.h"
+#include "render/base/warning.h"
 #include "render/files/source_files.h"
 
 namespace gladstone {
@@ -19,7 +20,7 @@ struct CalibratedPlane {
   double z = 0;              ///< [m]
   std::string sha256;        ///< SHA-256 of the pixels
   std::size_t found = 0;     ///< number of spots that look like dots
-  std::size_t used = 0;      ///< number of these that were assigned to a node of the grid
+  std::size_t used = 0;      ///< number of these spots that were assigned to a node of the grid
   std::size_t not_dots = 0;  ///< number of detected spots with neither the size nor the shape of the dots
   /// spots at nodes of the grid that do not fit the other dots, excluded from the fit [px]
   std::vector<Vec2d> strangers;
@@ -37,7 +38,7 @@ struct Calibration {
   PinholeFit pinhole;
   SoloffFit soloff;
   Vec2d drift{};  ///< X and Y components of the unit vector along which the plate was moved [1]
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::optional<PinholeCamera> rendered;  ///< true camera stored in the case's truth.h5, used only for comparison
   SourceFiles sources;
   std::string setup;  ///< resolved setup as TOML text

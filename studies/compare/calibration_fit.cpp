@@ -15,12 +15,12 @@ namespace {
 
 // lower bound of the dots' scatter within a plane, used as reference for residuals
 constexpr double least_scatter_px = 0.01;
-constexpr double suspicious = 5;  // multiple of that scatter above which the cause of a residual is investigated
-constexpr double refused = 10;    // multiple of that scatter above which a residual is reported as an error
+constexpr double suspicious = 5;  // multiple of the dots' scatter above which the cause of a residual is investigated
+constexpr double refused = 10;    // multiple of the dots' scatter above which a residual is reported as an error
 constexpr double least_refused_px = 0.5;   // residual below which only a warning is given
 constexpr double outlier_deviations = 8;   // residual of an outlier, in robust standard deviations
 constexpr double least_outlier_px = 0.05;  // residual below which a dot is never an outlier
-constexpr double same_place = 3;          // rms distance, in multiples of that scatter, below which two planes coincide
+constexpr double same_place = 3;  // rms distance, in multiples of the dots' scatter, below which two planes coincide
 constexpr double principal_share = 0.05;  // allowed error of the principal point, relative to the image's longer side
 constexpr double tilted_share = 0.2;      // additional allowed error, relative to its displacement by the sensor's tilt
 constexpr double deviations = 6;          // significance limit, in standard errors
@@ -63,7 +63,7 @@ class CalibrationFit {
   double z_mm(std::size_t plane) const { return dots_.z[plane] / unit::millimetre; }
   Vec2d middle_px() const { return {0.5 * (calibration_.columns - 1), 0.5 * (calibration_.rows - 1)}; }
   double focal_length() { return 0.5 * (pinhole().camera.fx() + pinhole().camera.fy()); }
-  void warn(std::string text) { calibration_.warnings.push_back(std::move(text)); }
+  void warn(Warning warning) { calibration_.warnings.push_back(std::move(warning)); }
 
   /// Throws if dots are at the same pixels in two planes, that is, if the plate was not moved.
   void refuse_planes_in_one_place() const {
@@ -139,12 +139,12 @@ class CalibrationFit {
   void explain_principal_point() {
     if (placement_.moved.empty()) try_placement(find_drift(dots_, *expected_.principal_point_px));
     if (!has_other_principal_point()) return;
-    warn(
-        fmt::format("the principal point ({:.1f}, {:.1f}) px is far from the setup's, ({:.1f}, {:.1f}) px (the plate "
-                    "was tilted relative to its direction of motion, or the sensor is tilted or shifted); check the "
-                    "plate, or set the tilt in camera.sensor",
-                    pinhole().camera.cx(), pinhole().camera.cy(), expected_.principal_point_px->x,
-                    expected_.principal_point_px->y));
+    warn({WarningCode::implausible, "",
+          fmt::format("the principal point ({:.1f}, {:.1f}) px is far from the setup's, ({:.1f}, {:.1f}) px (the plate "
+                      "was tilted relative to its direction of motion, or the sensor is tilted or shifted); check the "
+                      "plate, or set the tilt in camera.sensor",
+                      pinhole().camera.cx(), pinhole().camera.cy(), expected_.principal_point_px->x,
+                      expected_.principal_point_px->y)});
   }
 
   /// Fits with another placement of the plate; reverts to the previous fit if the residuals increase.
@@ -161,17 +161,18 @@ class CalibrationFit {
     for (std::size_t plane = 0; plane < placement_.moved.size(); ++plane) {
       std::array<int, 2> const by = placement_.moved[plane];
       if (by == std::array<int, 2>{}) continue;
-      warn(fmt::format(
-          "{}: the middle dot was wrong by {} columns and {} rows and was corrected; the residual is {:.2g} px rms, "
-          "without the correction {:.2g} px with the principal point at ({:.0f}, {:.0f}) px",
-          file(plane), by[0], by[1], pinhole().rms_px, before.rms_px, before.camera.cx(), before.camera.cy()));
+      warn({WarningCode::assumed, file(plane),
+            fmt::format("the middle dot was wrong by {} columns and {} rows and was corrected; the residual is {:.2g} "
+                        "px rms, without the correction {:.2g} px with the principal point at ({:.0f}, {:.0f}) px",
+                        by[0], by[1], pinhole().rms_px, before.rms_px, before.camera.cx(), before.camera.cy())});
     }
     if (Vec2d const drift = placement_.drift; length(drift) > 0) {
-      warn(fmt::format(
-          "the plate was moved at {:.3g} degrees to its normal ({:.3g} towards X, {:.3g} towards Y); world coordinates "
-          "refer to the plate: X and Y in it, Z along its normal (otherwise the principal point would be ({:.0f}, "
-          "{:.0f}) px)",
-          degrees(length(drift)), degrees(drift.x), degrees(drift.y), before.camera.cx(), before.camera.cy()));
+      warn({WarningCode::inconsistent, "",
+            fmt::format("the plate was moved at {:.3g} degrees to its normal ({:.3g} towards X, {:.3g} towards Y); "
+                        "world coordinates refer to the plate: X and Y in it, Z along its normal (otherwise the "
+                        "principal point would be ({:.0f}, {:.0f}) px)",
+                        degrees(length(drift)), degrees(drift.x), degrees(drift.y), before.camera.cx(),
+                        before.camera.cy())});
     }
   }
 
@@ -229,9 +230,10 @@ class CalibrationFit {
               "plate, camera or lens were turned or moved between images); correct planes_mm, or record the images "
               "again");
     }
-    warn(text + (expected_.is_pinhole ? " (a lens or windows that no pinhole camera with distortion describes, or "
-                                        "planes at other positions than calibration.planes_mm); prefer the polynomial"
-                                      : " (a pinhole camera does not describe windows); prefer the polynomial"));
+    warn({WarningCode::low_accuracy, "",
+          text + (expected_.is_pinhole ? " (a lens or windows that no pinhole camera with distortion describes, or "
+                                         "planes at other positions than calibration.planes_mm); prefer the polynomial"
+                                       : " (a pinhole camera does not describe windows); prefer the polynomial")});
   }
 
   void check_camera() {
@@ -248,22 +250,24 @@ class CalibrationFit {
                                   fit.camera.fx(), f_error, finite ? "too large" : "not finite"));
     }
     if (!fit.converged)
-      warn("the fit of the pinhole camera has not converged; show more planes, rows and columns of dots");
+      warn({WarningCode::low_accuracy, "",
+            "the fit of the pinhole camera has not converged; show more planes, rows and columns of dots"});
     if (expected_.is_pinhole &&
         std::abs(fit.camera.fx() - fit.camera.fy()) > std::max(square_pixels * f, deviations * f_error)) {
       refuse_guessed_middles();
-      warn(
-          fmt::format("fx = {:.6g} and fy = {:.6g} px differ, although pixels are square (a plate that is tilted or "
-                      "stretched); check calibration.spacing_mm along both axes",
-                      fit.camera.fx(), fit.camera.fy()));
+      warn({WarningCode::implausible, "",
+            fmt::format("fx = {:.6g} and fy = {:.6g} px differ, although pixels are square (a plate that is tilted or "
+                        "stretched); check calibration.spacing_mm along both axes",
+                        fit.camera.fx(), fit.camera.fy())});
     }
     if (expected_.focal_length_px &&
         std::abs(f - *expected_.focal_length_px) > std::max(other_focal_length * f, deviations * f_error)) {
-      warn(fmt::format(
-          "the focal length of {:.6g} px differs by {:.2g} % from the {:.6g} px of the setup's lens and pixels, more "
-          "than the tolerance of {:.0f} % of nominal focal lengths; check calibration.planes_mm and spacing_mm, the "
-          "order of the images, and the lens",
-          f, 100 * std::abs(f / *expected_.focal_length_px - 1), *expected_.focal_length_px, 100 * other_focal_length));
+      warn({WarningCode::implausible, "",
+            fmt::format("the focal length of {:.6g} px differs by {:.2g} % from the {:.6g} px of the setup's lens and "
+                        "pixels, more than the tolerance of {:.0f} % of nominal focal lengths; check "
+                        "calibration.planes_mm and spacing_mm, the order of the images, and the lens",
+                        f, 100 * std::abs(f / *expected_.focal_length_px - 1), *expected_.focal_length_px,
+                        100 * other_focal_length)});
     }
   }
 
@@ -307,10 +311,10 @@ class CalibrationFit {
     }
     for (CalibratedPlane const& plane : calibration_.planes) {
       if (plane.strangers.empty()) continue;
-      warn(
-          fmt::format("{}: {} spots on the grid differ from its dots in position or size (dirt, letters), the first at "
-                      "({:.1f}, {:.1f}) px, and were excluded",
-                      plane.file, plane.strangers.size(), plane.strangers[0].x, plane.strangers[0].y));
+      warn({WarningCode::excluded, plane.file,
+            fmt::format("{} spots on the grid differ from its dots in position or size (dirt, letters), the first at "
+                        "({:.1f}, {:.1f}) px, and were excluded",
+                        plane.strangers.size(), plane.strangers[0].x, plane.strangers[0].y)});
     }
   }
 

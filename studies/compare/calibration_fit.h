@@ -7,17 +7,16 @@ namespace gladstone {
 
 /// Expected properties of the calibrated camera, as far as the setup determines them.
 struct ExpectedCamera {
-  /// empty through windows, or if the sensor is tilted and no pinhole model exists [px]
+  /// expected principal point; empty through windows, or if the sensor is tilted and no pinhole model exists [px]
   std::optional<Vec2d> principal_point_px;
-  std::optional<double> focal_length_px;  ///< empty unless the lens is an ideal thin lens [px]
+  std::optional<double> focal_length_px;  ///< expected focal length; empty unless the lens is an ideal thin lens [px]
   bool is_pinhole = true;                 ///< false if the camera looks through windows
 };
 
 /// Fits a pinhole camera and a polynomial to the dots of a calibration and checks their consistency.
 /// - Dots whose residual exceeds eight robust standard deviations are removed and counted.
 /// - Middle dots assigned wrongly by whole spacings, or a plate not moved along its normal, show in the residuals or
-/// the
-///   principal point and are corrected with a warning (PlatePlacement).
+///   the principal point and are corrected with a warning (PlatePlacement).
 /// - Unequal fx and fy together with a plate not moved along its normal are an error if any middle dot is a guess.
 /// - Images in the wrong order, two planes at the same position, fits without a solution, and residuals far above the
 ///   scatter of the dots within their planes are errors; the message names the likely cause.

@@ -8,6 +8,8 @@
 #include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/flat_values.h"
+#include "studies/case/result_rows.h"
+#include "studies/case/warning_json.h"
 #include "studies/compare/calibrate.h"
 #include "studies/drawing/draw_figure.h"
 
@@ -101,6 +103,24 @@ nlohmann::ordered_json strangers_json(CalibratedPlane const& plane) {
   return places;
 }
 
+/// Returns the parameters of the pinhole camera, each with its fitted value and, if known, the rendered one.
+std::vector<ResultGroup> parameter_groups(Calibration const& calibration) {
+  PinholeFit const& fit = calibration.pinhole;
+  std::vector<ResultGroup> groups;
+  for (std::size_t i = 0; i < PinholeCamera::count; ++i) {
+    double const value = fit.camera.value[i], error = fit.standard_error[i];
+    std::vector<ResultRow> rows{{.key = "value", .label = "fitted", .value = value},
+                                {.key = "standard_error", .label = "standard error", .value = error}};
+    if (calibration.rendered) {
+      double const truth = calibration.rendered->value[i];
+      rows.push_back({.key = "rendered", .label = "rendered", .value = truth});
+      rows.push_back({.key = "off_by", .label = "off by", .value = (value - truth) / error});
+    }
+    groups.push_back({fmt::format("{} [{}]", PinholeCamera::names[i], PinholeCamera::units[i]), std::move(rows)});
+  }
+  return groups;
+}
+
 /// Returns e.g. "; excluded spots: 3 by size or shape, 1 by their position on the grid"; empty without such spots.
 std::string spots_in_words(CalibratedPlane const& plane) {
   if (plane.not_dots == 0 && plane.strangers.empty()) return "";
@@ -180,13 +200,10 @@ nlohmann::ordered_json calibration_json(Calibration const& calibration) {
                       {"middle_by", plane.middle_by == CentreDotMethod::whole_grid ? "whole_grid" : "setup"}});
   }
   PinholeFit const& fit = calibration.pinhole;
-  auto const finite = [](double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); };
+  std::vector<ResultGroup> const parameters = parameter_groups(calibration);
   for (std::size_t i = 0; i < PinholeCamera::count; ++i) {
-    ordered_json& entry = pinhole[PinholeCamera::names[i]];
-    entry = {{"value", fit.camera.value[i]},
-             {"standard_error", finite(fit.standard_error[i])},
-             {"unit", PinholeCamera::units[i]}};
-    if (calibration.rendered) entry["rendered"] = calibration.rendered->value[i];
+    pinhole[PinholeCamera::names[i]] = rows_json(parameters[i].rows);
+    pinhole[PinholeCamera::names[i]]["unit"] = PinholeCamera::units[i];
   }
   return {{"dots", calibration.points.size()},
           {"planes", planes},
@@ -196,24 +213,13 @@ nlohmann::ordered_json calibration_json(Calibration const& calibration) {
             {"rms_px", calibration.soloff.rms_px},
             {"largest_px", largest(calibration.soloff.residual_px)}}},
           {"drift", {calibration.drift.x, calibration.drift.y}},
-          {"warnings", calibration.warnings}};
+          {"warnings", to_strings(calibration.warnings)},
+          {"warning_records", calibration.warnings}};
 }
 
 std::string calibration_table(Calibration const& calibration) {
   PinholeFit const& fit = calibration.pinhole;
-  std::string text = fmt::format("{:<10}{:>20}{:>16}", "", "fitted", "standard error");
-  if (calibration.rendered) text += fmt::format("{:>20}{:>8}", "rendered", "off by");
-  text += '\n';
-  for (std::size_t i = 0; i < PinholeCamera::count; ++i) {
-    text += fmt::format("{:<10}{:>20.9g}{:>16.2g}",
-                        fmt::format("{} [{}]", PinholeCamera::names[i], PinholeCamera::units[i]), fit.camera.value[i],
-                        fit.standard_error[i]);
-    if (calibration.rendered) {
-      double const truth = calibration.rendered->value[i];
-      text += fmt::format("{:>20.9g}{:>8.1f}", truth, (fit.camera.value[i] - truth) / fit.standard_error[i]);
-    }
-    text += '\n';
-  }
+  std::string text = groups_text("", parameter_groups(calibration), 8);
   text +=
       calibration.rendered
           ? "(off by: difference in standard errors)\n"

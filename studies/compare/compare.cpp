@@ -16,6 +16,7 @@
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
 #include "studies/case/truth_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/comparison_kind.h"
@@ -80,8 +81,8 @@ void name_sources(Comparison& comparison, ComparedFiles files) {
   comparison.sources = std::move(files.sources);
 }
 
-GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
-                            RenderTheory theory) {
+GroundTruth truth_at_points(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                            std::vector<Vec2d> const& centres_px, TruthAt at, RenderTheory theory) {
   DotPattern virtual_dots;
   virtual_dots.shape = scene.dots.shape;
   for (Vec2d const& c : centres_px) virtual_dots.centre.push_back(scene.to_target(c));
@@ -96,17 +97,17 @@ GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<
   };
   // Both corrections use few rays, the first with point dots, the second with dots of the target's size.
   Scene rough = scene;
-  rough.rays_per_dot = std::min<std::uint64_t>(scene.rays_per_dot, 128);
-  rough.setup.render.rays_per_dot = rough.rays_per_dot;
+  RenderPlan few = plan;
+  rough.setup.render.rays_per_dot = few.rays = std::min<std::uint64_t>(plan.rays, 128);
   for (double const half_size : {0.0, scene.dots.half_size}) {
     virtual_dots.half_size = half_size;
-    correct(renderer.render(rough, virtual_dots, RenderImages::no, RenderTheory::no).truth);
+    correct(renderer.render(rough, few, virtual_dots, RenderImages::no, RenderTheory::no).truth);
   }
-  return renderer.render(scene, virtual_dots, RenderImages::no, theory).truth;
+  return renderer.render(scene, plan, virtual_dots, RenderImages::no, theory).truth;
 }
 
-std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point) {
-  if (resolve_render_method(scene) == RenderMethod::focused_dots && scene.setup.lens.focus == Focus::target)
+std::vector<Vec2d> ideal_lens_truth(Scene scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point) {
+  if (plan.method == RenderMethod::focused_dots && scene.setup.lens.focus == Focus::target)
     return point.displacement_px;
   DotPattern virtual_dots;
   virtual_dots.half_size = scene.dots.half_size;
@@ -114,32 +115,35 @@ std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth
   for (Vec3d const& p : point.position_m) virtual_dots.centre.push_back({p.x, p.y});
   // On the optical axis, the ideal lens can be rendered by the fast renderer, unless rays are requested.
   bool const focusable = scene.setup.has_closed_form_layout() && !scene.chief_rays_only();
-  if (!focusable || scene.setup.render.method == RenderMethod::rays) return ideal_displacements(scene, virtual_dots);
+  bool const by_rays = scene.setup.render.method == RenderMethod::rays || plan.method != resolve_render_method(scene);
+  if (!focusable || by_rays) return ideal_displacements(scene, plan, virtual_dots);
+  plan.method = RenderMethod::automatic;
   // Retain the sensor's position, and so the magnification; change the focal length to focus on the target.
   scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
   scene.setup.lens.focus = Focus::target;
   scene.setup.lens.f_number = scene.setup.lens.focal_length / scene.imaging.entrance_pupil;
   scene.camera = build_camera(scene.setup);
-  return renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
+  return renderer.render(scene, plan, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
 }
 
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
                             TruthAt at) {
-  return comparison_kind(prepared.scene.setup).truth(prepared.scene, renderer, position_px, at);
+  return comparison_kind(prepared.scene.setup).truth(prepared.scene, prepared.plan, renderer, position_px, at);
 }
 
 Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options) {
   ComparedFiles files = compared_files(folder, options.vectors);
   if (!files.unverified.empty()) {
-    spdlog::warn(
-        "unverified: {} contains no SHA-256 of its frames, so that it is unknown whether {} was measured on this case",
-        files.unverified, files.vectors);
+    log_warning(
+        {WarningCode::assumed, files.unverified,
+         fmt::format("contains no SHA-256 of its frames, so that it is unknown whether {} was measured on this case",
+                     files.vectors)});
   }
   CaseSetup loaded = load_case_setup(files.setup, {});
   GroundTruth const dots = read_truth(files.truth);
   MeasuredVectors vectors = load_vectors(files.vectors, loaded, &dots, options);
   stop_point("comparing");
-  std::vector<std::string> given;  // warnings already logged
+  Warnings given;  // warnings already logged
   auto const setup = std::make_shared<CaseSetup const>(loaded.copy());
   std::string fingerprint = comparison_fingerprint(files.sources, options);
   Comparison comparison = comparison_of(vectors, loaded.setup);
@@ -161,8 +165,8 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
   comparison.setup = setup;
   comparison.fingerprint = std::move(fingerprint);
   comparison.warnings = comparison_warnings(comparison, loaded.setup);
-  for (std::string const& warning : comparison.warnings) {
-    if (std::find(given.begin(), given.end(), warning) == given.end()) spdlog::warn("{}", warning);
+  for (Warning const& warning : comparison.warnings) {
+    if (std::find(given.begin(), given.end(), warning) == given.end()) log_warning(warning);
   }
   return comparison;
 }
@@ -191,7 +195,8 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
                                                        measured.position_px, settings, camera.columns, camera.rows, at);
   }
   comparison.frames_deformed = !tracked && (settings.window_px.size() > 1 || settings.final_passes > 1);
-  if (rendered && !settings.gives_scattered_vectors()) {  // other dots may be found in noise-free images
+  if (rendered && !settings.gives_scattered_vectors()) {  // scattered vectors are excluded, since other dots may be
+                                                          // found in noise-free images
     Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);
     DisplacementField again =
         every_nth(correlate_frames(*rendered->rendering->in_place->ideal(detector),

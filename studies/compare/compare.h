@@ -11,6 +11,7 @@
 #include "analysis/errors/window_truth.h"
 #include "analysis/vectors/convention_detection.h"
 #include "analysis/vectors/vector_screening.h"
+#include "render/base/warning.h"
 #include "render/scene/renderer.h"
 #include "studies/case/backend.h"
 #include "studies/case/case.h"
@@ -22,7 +23,7 @@ namespace gladstone {
 struct CompareOptions {
   std::string vectors;  ///< path of the vectors; empty: CASE/vectors.h5
   TruthAt truth_at = TruthAt::mid_position;
-  std::optional<std::string> conventions;  ///< as given by the user; empty: detected for foreign files
+  std::optional<std::string> conventions;  ///< conventions given by the user; empty: detected for foreign files
   bool figures = true;
   bool reuse = false;  ///< reuse the stored comparison of the CASE if it was computed from the same files
 };
@@ -32,11 +33,13 @@ struct Comparison {
   DisplacementField measured;
   BudgetChain chain = BudgetChain::bos;
   GroundTruth point;  ///< truth and theory of the virtual dot (particle) at each vector's position; no theory for PIV
-  /// displacements of the same virtual dots through an ideal lens focused on the target [px]; empty for PIV
+  /// displacements of the virtual dots of `point` through an ideal lens focused on the target [px]; empty for PIV
   std::vector<Vec2d> thin_lens;
-  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: see ParticlePoints [px]
+  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: displacement by the flow alone, and by ray tracing without the
+                                           ///< medium, see ParticlePoints [px]
   WindowTruth window, deformed_window;
-  bool frames_deformed = false;  ///< several passes: the measurement follows deformed_window, else window
+  bool frames_deformed = false;  ///< true: several passes, whose vectors measure deformed_window; false: a single pass,
+                                 ///< which measures window
   /// vectors measured on noise-free, unquantised images [px]; empty for foreign vectors
   std::vector<Vec2d> noise_free;
   VectorMask mask;
@@ -44,10 +47,10 @@ struct Comparison {
   ErrorBudget budget_after_passes;  ///< budget relative to the truth on deformed windows; empty unless frames_deformed
   std::string report;               ///< conventions detected in a foreign file; empty for our own
   RejectedVectors left_out;         ///< vectors of the file that were rejected; `measured` holds the others
-  std::optional<DetectedConventions> detected;  ///< for a foreign file
+  std::optional<DetectedConventions> detected;  ///< conventions detected in a foreign file
   bool complete = true;                         ///< false: the file's header declares another number of vectors
   bool foreign = false;
-  std::vector<std::string> warnings;       ///< comparison_warnings() of the case
+  Warnings warnings;                       ///< comparison_warnings() of the case
   std::shared_ptr<CaseSetup const> setup;  ///< setup of the case as it was read; null for vectors in memory
   SourceFiles sources;      ///< contents of the compared files; empty for vectors that were never stored in files
   std::string fingerprint;  ///< comparison_fingerprint() of a CASE
@@ -70,13 +73,14 @@ struct Comparison {
 
 /// Traces virtual dots of the target's size whose mid-position (or reference position) is each of `centres_px`. Finds
 /// their positions on the target by two corrections with few rays, then computes truth and theory with all rays.
-GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
-                            RenderTheory theory);
+GroundTruth truth_at_points(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                            std::vector<Vec2d> const& centres_px, TruthAt at, RenderTheory theory);
 
-/// Computes the displacements of the same virtual dots through an ideal thin lens that images the target sharply at the
-/// scene's magnification, with the same rays and aperture stop [px]. The difference from the actual lens, including
+/// Computes the displacements of the virtual dots of `point` through an ideal thin lens that images the target sharply
+/// at the scene's magnification, with the same rays and aperture stop [px]. The difference from the actual lens,
+/// including
 /// defocus, is the budget's aberration.
-std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point);
+std::vector<Vec2d> ideal_lens_truth(Scene scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point);
 
 /// Vectors to be compared and their origin.
 struct MeasuredVectors {
@@ -86,7 +90,7 @@ struct MeasuredVectors {
   std::string report{};          ///< conventions detected in a foreign file
   std::string name{};            ///< name of the file or the case, for messages
   RejectedVectors left_out{};
-  std::optional<DetectedConventions> detected{};  ///< for a foreign file
+  std::optional<DetectedConventions> detected{};  ///< conventions detected in a foreign file
   bool complete = true;                           ///< false: the file's header declares another number of vectors
   /// the vectors are every n-th of the lattice defined by the settings, see every_nth()
   int every = 1;
@@ -96,7 +100,8 @@ struct MeasuredVectors {
 struct PointTruth {
   GroundTruth point;
   std::vector<Vec2d> thin_lens;
-  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: see ParticlePoints [px]
+  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: displacement by the flow alone, and by ray tracing without the
+                                           ///< medium, see ParticlePoints [px]
 };
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
                             TruthAt at);
@@ -121,11 +126,5 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
 nlohmann::ordered_json compute_error_measures(Comparison const& comparison);
 /// Returns compute_error_measures() as the text of errors.json.
 std::string errors_json(Comparison const& comparison);
-
-/// Draws displacement maps, error histograms, error against gradient and the budget into a folder.
-/// @param format  "png", "svg" or "pdf"
-/// @return paths of the figures
-std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
-                                         std::string const& format = "png");
 
 }  // namespace gladstone

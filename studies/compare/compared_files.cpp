@@ -100,7 +100,7 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
 
 PreparedCase prepare_stored_case(std::string const& folder) {
   require_unchanged_inputs(folder);
-  LogSilencer const quiet;  // its warnings are already in its summary.json
+  LogSilencer const quiet;  // the warnings of the case are already in its summary.json
   CaseSetup loaded = load_case_setup(in_case(folder, case_file::setup), {});
   StrainMap const unused{};
   ReusableParts known;

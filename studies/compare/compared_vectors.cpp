@@ -11,6 +11,8 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
+#include "studies/case/correlation_setup.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -22,8 +24,8 @@ class TruthMap {
       : grid_{camera.columns / spacing + 1, camera.rows / spacing + 1, {0, 0}, spacing},
         maps_(map_scattered(near_view(truth.reference_px, camera), truth.displacement_px, grid_)) {}
 
-  /// Interpolates bilinearly, so that offsets of half a pixel are detectable. Returns NaN farther outside the view than
-  /// the pixel conventions of different codes differ.
+  /// Interpolates bilinearly, so that offsets of half a pixel are detectable. Returns NaN outside the view, beyond a
+  /// margin for the different pixel conventions of codes.
   Vec2d at(Vec2d c) const {
     Vec2d const last{spacing * (grid_.columns - 1.0), spacing * (grid_.rows - 1.0)};
     Vec2d const inside{std::clamp(c.x, 0.0, last.x), std::clamp(c.y, 0.0, last.y)};
@@ -57,7 +59,7 @@ class TruthMap {
 };
 
 /// Rejects vectors that lie or point outside the image.
-/// @throws DataError if no vector remains, or no position is in px
+/// @throws DataError if no vector remains, or if the positions cannot be in px
 RejectedVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
   bool const turned = file.conventions.exchanges_places();  // the file's x then points down
   int const columns = turned ? camera.rows : camera.columns, rows = turned ? camera.columns : camera.rows;
@@ -65,11 +67,12 @@ RejectedVectors screen(VectorFile& file, std::string const& path, CameraSetup co
   std::string const refusal = reason_to_reject_positions(file.field, left_out, columns, rows);
   if (!refusal.empty()) throw DataError(ErrorCode::inconsistent, path, refusal);
   if (left_out.all() > 0) {
-    spdlog::warn("{}: {} of {} vectors are excluded: {}", path, left_out.all(),
-                 file.field.size() + left_out.without_place(), left_out.text());
+    log_warning({WarningCode::excluded, path,
+                 fmt::format("{} of {} vectors are excluded: {}", left_out.all(),
+                             file.field.size() + left_out.without_place(), left_out.text())});
   }
   std::string const doubt = describe_suspect_positions(file.field, columns, rows);
-  if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
+  if (!doubt.empty()) log_warning({WarningCode::implausible, path, doubt});
   return left_out;
 }
 
@@ -111,15 +114,15 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
                     detected.report + ", or specify its reading with --conventions if the file cannot be corrected");
   }
   if (misfits) {
-    spdlog::warn(
-        "{}: the vectors do not follow the true displacement, also with other axes, signs or units: they differ from "
-        "it by {:.3g} px rms, and it is {:.3g} px rms itself; if their estimator is more accurate than this, check the "
-        "order of the frames, the axes and the units",
-        path, detected.fit.rms_px, detected.fit.signal_px);
+    log_warning({WarningCode::implausible, path,
+                 fmt::format("the vectors do not follow the true displacement, also with other axes, signs or units: "
+                             "they differ from it by {:.3g} px rms, and it is {:.3g} px rms itself; if their estimator "
+                             "is more accurate than this, check the order of the frames, the axes and the units",
+                             detected.fit.rms_px, detected.fit.signal_px)});
   } else if (detected.mistake.found()) {
-    spdlog::warn("{}: likely mistake: {}", path, detected.mistake.warning());
+    log_warning({WarningCode::implausible, path, "likely mistake: " + detected.mistake.warning()});
   } else if (detected.verdict == Verdict::cannot_be_told || has_rival_of_its_own(file, detected)) {
-    spdlog::warn("{}: {}; specify it with --conventions", path, detected.report);
+    log_warning({WarningCode::assumed, path, detected.report + "; specify it with --conventions"});
   }
   return detected;
 }
@@ -127,7 +130,7 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
 }  // namespace
 
 void log_remarks(VectorFile const& file) {
-  for (std::string const& warning : file.warnings) spdlog::warn("{}", warning);
+  log_warnings(file.warnings);
   for (std::string const& note : file.notes) spdlog::info("{}", note);
 }
 
@@ -141,10 +144,10 @@ MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSet
   bool any_valid = left_out.all() > left_out.displacement_not_finite;
   for (std::size_t i = 0; i < file.field.size() && !any_valid; ++i) any_valid = file.field.counts(i);
   if (!any_valid)
-    throw DataError(ErrorCode::no_valid_vector, name,
-                    fmt::format("none of its {} vectors is valid; check the frames and how they were "
-                                "correlated",
-                                file.field.size()));
+    throw DataError(
+        ErrorCode::no_valid_vector, name,
+        fmt::format("all of its {} vectors are invalid; check the frames and the settings of the correlation",
+                    file.field.size()));
   MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, name, left_out, {}};
   if (options.conventions && specifies_reading(*options.conventions)) {
     vectors.report = file.format + " vectors, as specified: " + describe(file.conventions);

@@ -8,9 +8,8 @@
 
 namespace gladstone {
 
-/// Displacement, besides the ray truth, with which vectors are compared.
+/// Reference displacement, in addition to the ray truth, with which vectors are compared.
 struct ReferenceDisplacement {
-  char const* key;       ///< of its maps in a report
   char const* measures;  ///< key of its error measures
   char const* name;      ///< in figures and tables
   char const* row;       ///< name in the report on the terminal
@@ -18,26 +17,27 @@ struct ReferenceDisplacement {
   std::vector<Vec2d> const& (*of)(Comparison const& comparison);
 };
 
-/// Kind of comparison: with what the vectors of an experiment are compared.
+/// Kind of comparison: references and words for the vectors of one experiment.
 struct ComparisonKind {
   Experiment const& experiment;
   BudgetChain chain;
-  char const* title;  ///< name of the experiment in sentences
-  /// The first is the theory, with which the error budget begins.
+  char const* title;  ///< name of the experiment as it appears in sentences
+  /// References of the comparison; the first one is the theory, with which the error budget begins.
   std::array<ReferenceDisplacement, 2> references;
-  char const* theory;       ///< the theory as an object: "against ..."
-  char const* origin;       ///< beginning of the budget: "from ..."
+  char const* theory;       ///< theory as the object of a sentence: "against ..."
+  char const* origin;       ///< beginning of the error budget: "from ..."
   char const* bias;         ///< "the displacement ..."
   char const* bias_causes;  ///< causes of the difference between true displacement and theory
-  char const* measured;     ///< what the displacement contains information on
+  char const* measured;     ///< quantity on which the displacement contains information
   char const* remedy;       ///< keys that increase the displacement
   /// Returns the stages of the budget from the theory to the ray truth.
   std::vector<BudgetStage> (*stages)(Comparison const& comparison);
   /// Computes truth and theory at points of the image, see truth_of_vectors().
-  PointTruth (*truth)(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px, TruthAt at);
+  PointTruth (*truth)(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                      std::vector<Vec2d> const& position_px, TruthAt at);
   /// Computes the true displacements alone.
-  GroundTruth (*displacements)(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px,
-                               TruthAt at);
+  GroundTruth (*displacements)(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                               std::vector<Vec2d> const& position_px, TruthAt at);
   /// Returns true if the true displacements require no rays.
   bool (*without_rays)(Scene const& scene);
 };

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/compare/compare.h"
 
 namespace gladstone {
@@ -12,6 +13,6 @@ inline constexpr double least_signal_px = 0.01;
 
 /// Returns warnings that limit the validity of a comparison: peak locking from small dot images, and true displacements
 /// below least_signal_px or below the vectors' error.
-std::vector<std::string> comparison_warnings(Comparison const& comparison, Setup const& setup);
+Warnings comparison_warnings(Comparison const& comparison, Setup const& setup);
 
 }  // namespace gladstone

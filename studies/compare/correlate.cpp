@@ -1,7 +1,6 @@
 #include "studies/compare/correlate.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -21,10 +20,11 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
-#include "render/setup/setup_table.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/case.h"
 #include "studies/case/peak_locking.h"
 #include "studies/case/truth_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/tracked_dots.h"
 
 namespace gladstone {
@@ -69,14 +69,15 @@ CorrelationSettings with_dots_of_case(CorrelationSettings const& settings, Setup
 /// Warns of conversions applied to an image on reading.
 void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
   if (metadata.channels >= 3) {
-    spdlog::warn(
-        "{} is a colour image: its luminance (Rec. 709) is correlated; raw grey images of the camera are better", path);
+    log_warning(
+        {WarningCode::assumed, path,
+         "is a colour image: its luminance (Rec. 709) is correlated; raw grey images of the camera are better"});
   }
   if (metadata.orientation != 1) {
-    spdlog::warn(
-        "{} is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry is wrong, write the "
-        "image without it",
-        path, metadata.orientation);
+    log_warning({WarningCode::assumed, path,
+                 fmt::format("is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry "
+                             "is wrong, write the image without it",
+                             metadata.orientation)});
   }
 }
 
@@ -100,27 +101,57 @@ Measurement correlate_prepared(StoredFrames const& frames, CorrelationSettings s
   settings.preparation = {};
   Measurement measurement = correlate_frames(*prepared, settings, device);
   if (valid_pixel_fraction(*prepared) == 0.0)
-    measurement.field.warnings.emplace_back(
-        "the masks cover every pixel of the frames (so that every vector is masked); reduce correlate.mask");
+    measurement.field.warnings.push_back(
+        {WarningCode::excluded, "",
+         "the masks cover every pixel of the frames (so that every vector is masked); reduce correlate.mask"});
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
 
+/// Frame of a pair: its name in messages and its size [px].
+struct NamedFrame {
+  std::string const& name;
+  std::int64_t columns, rows;
+};
+
+/// @throws DataError if the frames differ in size or are smaller than an interrogation window
+void check_sizes(NamedFrame const& reference, NamedFrame const& flow, CorrelationSettings const& settings) {
+  if (reference.columns != flow.columns || reference.rows != flow.rows) {
+    throw DataError(ErrorCode::wrong_shape, flow.name,
+                    fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", flow.columns,
+                                flow.rows, reference.name, reference.columns, reference.rows));
+  }
+  int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
+  if (largest > std::min(reference.columns, reference.rows)) {
+    throw DataError(ErrorCode::wrong_shape, reference.name,
+                    fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
+                                reference.columns, reference.rows, largest));
+  }
+}
+
 /// Warns of pixels that are NaN or infinite, which the correlator excludes from every window; throws if there are no
 /// others.
-void check_finite(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
-                  Image<double> const& flow) {
-  for (auto const& [name, image] : {std::pair(reference_name, &reference), std::pair(flow_name, &flow)}) {
-    std::size_t const bad = count_not_finite(*image);
-    if (bad == image->size()) {
-      throw DataError(ErrorCode::invalid_value, name,
-                      fmt::format("all of its {} pixels are nan or infinite; export it again", bad));
-    }
-    if (bad > 0) {
-      spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded from their windows", name, bad,
-                   image->size());
-    }
+void check_finite(NamedFrame const& frame, std::size_t not_finite) {
+  auto const size = static_cast<std::size_t>(frame.columns * frame.rows);
+  if (not_finite == size) {
+    throw DataError(ErrorCode::invalid_value, frame.name,
+                    fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
   }
+  if (not_finite > 0) {
+    log_warning(
+        {WarningCode::excluded, frame.name,
+         fmt::format("{} of {} pixels are nan or infinite, and are excluded from their windows", not_finite, size)});
+  }
+}
+
+/// Correlates frames of suitable sizes, and estimates the uncertainty of the vectors.
+Measurement correlate_checked(StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device) {
+  stop_point("correlating");
+  bool const on_cpu = device.correlates_on(settings) == "cpu";
+  Measurement measurement = correlate_frames(frames, choose_uncertainty(settings, on_cpu), device);
+  record_uncertainty(measurement.field, settings,
+                     on_cpu ? CorrelatedFrames::pair_on_cpu : CorrelatedFrames::pair_on_gpu);
+  return measurement;
 }
 
 }  // namespace
@@ -128,24 +159,22 @@ void check_finite(std::string const& reference_name, Image<double> const& refere
 Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name, HostFrames const& frames,
                              CorrelationSettings const& settings, Backend const& device) {
   Image<double> const &reference = frames.reference(), &flow = frames.flow();
-  if (reference.columns() != flow.columns() || reference.rows() != flow.rows()) {
-    throw DataError(ErrorCode::wrong_shape, flow_name,
-                    fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", flow.columns(),
-                                flow.rows(), reference_name, reference.columns(), reference.rows()));
-  }
-  int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
-  if (largest > std::min(reference.columns(), reference.rows())) {
-    throw DataError(ErrorCode::wrong_shape, reference_name,
-                    fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
-                                reference.columns(), reference.rows(), largest));
-  }
-  check_finite(reference_name, reference, flow_name, flow);
-  stop_point("correlating");
-  bool const on_cpu = device.correlates_on(settings) == "cpu";
-  Measurement measurement = correlate_frames(frames, choose_uncertainty(settings, on_cpu), device);
-  record_uncertainty(measurement.field, settings,
-                     on_cpu ? CorrelatedFrames::pair_on_cpu : CorrelatedFrames::pair_on_gpu);
-  return measurement;
+  NamedFrame const a{reference_name, reference.columns(), reference.rows()}, b{flow_name, flow.columns(), flow.rows()};
+  check_sizes(a, b, settings);
+  check_finite(a, count_not_finite(reference));
+  check_finite(b, count_not_finite(flow));
+  return correlate_checked(frames, settings, device);
+}
+
+Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples const& reference,
+                                 std::string const& flow_name, ImageSamples const& flow,
+                                 CorrelationSettings const& settings, Backend const& device) {
+  NamedFrame const a{reference_name, reference.columns, reference.rows}, b{flow_name, flow.columns, flow.rows};
+  check_sizes(a, b, settings);
+  CopiedFrames const copied = copy_frames_on_gpu(reference, flow);
+  check_finite(a, copied.not_finite[0]);
+  check_finite(b, copied.not_finite[1]);
+  return correlate_checked(*copied.frames, settings, device);
 }
 
 Measurement correlate_frames(StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device) {
@@ -158,14 +187,14 @@ Measurement correlate_frames(StoredFrames const& frames, CorrelationSettings con
   auto const counts = [](VectorStatus status) { return status <= VectorStatus::replaced; };
   bool const any = std::any_of(measurement.field.status.begin(), measurement.field.status.end(), counts);
   if (std::string caveat = uncertainty_caveat(settings); any && !caveat.empty())
-    measurement.field.warnings.push_back(std::move(caveat));
+    measurement.field.warnings.push_back({WarningCode::low_accuracy, "correlate.uncertainty", std::move(caveat)});
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
 
 CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides,
                                       PreparedSet set) {
-  return read_document(SetupDocument::from_file(path), overrides, set);
+  return read_document(read_setup_document(path), overrides, set);
 }
 
 CorrelationFile default_correlation(std::vector<std::string> const& overrides, PreparedSet set) {
@@ -229,9 +258,10 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
   record_uncertainty(measurement.field, settings, CorrelatedFrames::ensemble);
   if (!twice.empty() && twice.size() < pairs.size)
     measurement.field.warnings.push_back(
-        fmt::format("{} of {} pairs consist of two identical images (which biases the displacement towards 0), the "
-                    "first with {}; remove them",
-                    twice.size(), pairs.size, twice.front()));
+        {WarningCode::unreliable, twice.front(),
+         fmt::format(
+             "is both images of a pair (which biases the displacement towards 0), as in {} of {} pairs; remove them",
+             twice.size(), pairs.size)});
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
@@ -252,10 +282,10 @@ void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sourc
         !first.empty() && first != second && sources.sha256("reference") == second && sources.sha256("flow") == first;
   }
   if (!exchanged) return;
-  field.warnings.push_back(
-      fmt::format("the frames are exchanged: {} is the flow frame and {} the reference, so that every displacement has "
-                  "the opposite sign; give the reference first",
-                  reference.string(), flow.string()));
+  field.warnings.push_back({WarningCode::inconsistent, "",
+                            fmt::format("the frames are exchanged: {} is the flow frame and {} the reference, so that "
+                                        "every displacement has the opposite sign; give the reference first",
+                                        reference.string(), flow.string())});
 }
 
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
@@ -277,8 +307,8 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,
       measurement.device,  sources};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
-  if (std::string advice = locking_advice(loaded.setup); frames_correlate(measurement.field) && !advice.empty())
-    measurement.field.warnings.push_back(std::move(advice));
+  if (auto const advice = locking_advice(loaded.setup); advice && frames_correlate(measurement.field))
+    measurement.field.warnings.push_back(*advice);
   return measurement;
 }
 

@@ -6,8 +6,10 @@
 #include "analysis/correlation/correlation_settings.h"
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/image.h"
+#include "render/base/image_samples.h"
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
+#include "studies/case/correlation_setup.h"
 
 namespace gladstone {
 
@@ -22,6 +24,11 @@ struct Measurement {
 /// @throws DataError if they differ in size or are smaller than an interrogation window
 Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name, HostFrames const& frames,
                              CorrelationSettings const& settings, Backend const& device);
+/// Like correlate_frames(), for images that another library stores in the memory of the first GPU; they are not copied
+/// to the host unless the settings require the CPU.
+Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples const& reference,
+                                 std::string const& flow_name, ImageSamples const& flow,
+                                 CorrelationSettings const& settings, Backend const& device);
 /// Correlates two frames that may be stored on a device; estimates no uncertainty if its method is "auto".
 /// @pre the frames are at least as large as the largest interrogation window
 Measurement correlate_frames(StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device);

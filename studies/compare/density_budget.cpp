@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/density/density_methods.h"
 #include "render/base/contracts.h"
 #include "studies/compare/budget_stages.h"
 
@@ -35,9 +36,9 @@ std::vector<DensityTerm> compute_density_budget(Comparison const& comparison, Re
   GLADSTONE_EXPECTS(comparison.chain == BudgetChain::bos && !reconstruction.truth.empty());
   ReconstructOptions fixed = options;
   fixed.propagate = false;
-  if (reconstruction.axisymmetry) {  // the same inversion for all stages
+  if (reconstruction.axisymmetry) {  // use the same inversion for all stages
     fixed.axis->position = reconstruction.axisymmetry->axis.position;
-    if (fixed.abel == density::AbelMethod::tikhonov) fixed.lambda = reconstruction.axisymmetry->lambda;
+    if (density::abel_method(fixed.abel).regularized) fixed.lambda = reconstruction.axisymmetry->lambda;
   }
   // Use only vectors with a displacement at every stage
   std::vector<BudgetStage> const causes = budget_differences(comparison);

@@ -12,8 +12,8 @@ namespace gladstone {
 /// error of the density reconstructed from Eq. 9 (`integration`: spacing of the vectors, reference density) add up to
 /// the error. Only vectors that can be compared with the truth are used, so that the total may differ slightly from
 /// compute_density_errors().
-/// @param comparison      of the same vectors, with the BOS chain
-/// @param reconstruction  of these vectors, with truth
+/// @param comparison      comparison of the same vectors, with the BOS chain of displacements
+/// @param reconstruction  reconstruction from these vectors, with truth
 /// @param window_px,options  as for reconstruct_density()
 /// @return                terms in the order of the chain, then `total`
 std::vector<DensityTerm> compute_density_budget(Comparison const& comparison, Reconstruction const& reconstruction,

@@ -25,7 +25,7 @@ void add_codes(GridTable& table, char const* name, char const* description, std:
   table.columns.back().is_code = true;
 }
 
-/// Adds truth and error of a rendered case. @param density  the measured one
+/// Adds truth and error of a rendered case. @param density  measured density
 void add_truth(GridTable& table, std::vector<double> const& density, std::vector<double> const& truth) {
   if (truth.empty()) return;
   std::vector<double> error(density.size());

@@ -25,8 +25,9 @@ std::vector<TableAxis> make_volume_axes(RegularGrid const& grid);
 /// @param order  meaning of the axes of the datasets
 void write_grid_datasets(Hdf5Writer& file, Hdf5Axes& axes, GridTable const& table, std::string const& order);
 
-/// Returns the endings of the files that `gladstone reconstruct` and `tomography` write: .h5 and those of
-/// grid_table_extensions(). @throws OutputError if a path has none of them
+/// Returns the file extensions that `gladstone reconstruct` and `tomography` write: .h5 and those of
+/// grid_table_extensions().
+/// @throws OutputError if a path has another extension
 void require_density_ending(std::string const& path);
 
 /// Returns true for density.h5 of a plane, and for the HDF5 file of a volume.

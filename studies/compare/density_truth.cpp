@@ -24,7 +24,7 @@ LineWeights weigh_line(double position, int nodes) {
   int const cell = std::clamp(static_cast<int>(std::floor(position)), 0, nodes - 2);
   double const t = position - cell;
   if (cell == 0 || cell == nodes - 2) return {cell, {1.0 - t, t}, 2};
-  // Abramowitz & Stegun 25.2.13
+  // cubic Lagrange interpolation, Abramowitz & Stegun 25.2.13
   return {cell - 1,
           {-t * (t - 1.0) * (t - 2.0) / 6.0, (t * t - 1.0) * (t - 2.0) / 2.0, -t * (t + 1.0) * (t - 2.0) / 2.0,
            t * (t * t - 1.0) / 6.0},

@@ -20,9 +20,11 @@ void warn_of_regions(Reconstruction& result, std::vector<density::Region> const&
   }
   if (without == 0) return;
   result.warnings.push_back(
-      fmt::format("{} of {} regions of valid vectors contain no reference density, so that {} vectors have no density; "
-                  "the largest has {}; add --reference X0,Y0,X1,Y1 within it if its density is known somewhere",
-                  without, regions.size(), nodes, describe_region(*largest)));
+      {WarningCode::incomplete, "reference",
+       fmt::format(
+           "{} of {} regions of valid vectors contain no reference density, so that {} vectors have no density; the "
+           "largest has {}; add --reference X0,Y0,X1,Y1 within it if its density is known somewhere",
+           without, regions.size(), nodes, describe_region(*largest))});
 }
 
 void warn_of_reference_gradient(Reconstruction& result) {
@@ -41,17 +43,19 @@ void warn_of_reference_gradient(Reconstruction& result) {
   }
   if (inside == 0 || !(squares > 0)) return;
   if (inside == valid) {
-    result.warnings.emplace_back(
-        "the reference region contains all vectors, so that the density is the reference density everywhere; choose a "
-        "region outside the flow");
+    result.warnings.push_back({WarningCode::unsuitable, "reference",
+                               "the reference region contains all vectors, so that the density is the reference "
+                               "density everywhere; choose a region outside the flow"});
     return;
   }
   double const ratio = length(sum) / static_cast<double>(inside) / std::sqrt(squares / static_cast<double>(valid));
   if (ratio < largest_ratio) return;
   result.warnings.push_back(
-      fmt::format("the mean gradient in the reference region is {:.0f} % of the rms gradient of all vectors: the flow "
-                  "reaches into the region, so that the density has an offset; choose a side or a box outside the flow",
-                  100 * ratio));
+      {WarningCode::unsuitable, "reference",
+       fmt::format(
+           "the mean gradient in the reference region is {:.0f} % of the rms gradient of all vectors: the flow reaches "
+           "into the region, so that the density has an offset; choose a side or a box outside the flow",
+           100 * ratio)});
 }
 
 WindowEffect estimate_window_effect(Reconstruction const& result) {
@@ -78,10 +82,12 @@ WindowEffect estimate_window_effect(Reconstruction const& result) {
 void warn_of_window(Reconstruction& result) {
   WindowEffect const effect = estimate_window_effect(result);
   if (!(effect.change > effect.sigma)) return;
-  result.warnings.push_back(fmt::format(
-      "the averaging over the interrogation windows changes the density by about {:.2g} kg/m^3 rms, {:.2g} times "
-      "the standard uncertainty, which does not contain it; use smaller windows, or a larger magnification",
-      effect.change, effect.change / effect.sigma));
+  result.warnings.push_back(
+      {WarningCode::low_accuracy, "correlate.window_px",
+       fmt::format(
+           "the averaging over the interrogation windows changes the density by about {:.2g} kg/m^3 rms, {:.2g} times "
+           "the standard uncertainty, which does not contain it; use smaller windows, or a larger magnification",
+           effect.change, effect.change / effect.sigma)});
 }
 
 double compute_displacement_gradient(density::GradientMap const& projected, density::ProjectionOptics const& optics) {
@@ -111,11 +117,12 @@ void warn_of_displacement_gradient(Reconstruction& result, density::GradientMap 
   constexpr double noticeable = 0.01, least_error = 1.2, largest_error = 8.0;
   double const gradient = compute_displacement_gradient(projected, optics);
   if (!(gradient > noticeable)) return;
-  result.warnings.push_back(fmt::format(
-      "the displacement changes by {:.2g} px per px (rms, without noise): the deflection moves rays to other parts of "
-      "the medium than Eq. 9 assumes, which in turbulence causes errors of {:.0f} to {:.0f} % of the density's "
-      "variation, the more the wider the aperture; a smaller Z_D reduces them",
-      gradient, 100.0 * least_error * gradient, std::min(100.0, 100.0 * largest_error * gradient)));
+  result.warnings.push_back(
+      {WarningCode::low_accuracy, "geometry.z_d_mm",
+       fmt::format("the displacement changes by {:.2g} px per px (rms, without noise): the deflection moves rays to "
+                   "other parts of the medium than Eq. 9 assumes, which in turbulence causes errors of {:.0f} to "
+                   "{:.0f} % of the density's variation, the more the wider the aperture; a smaller Z_D reduces them",
+                   gradient, 100.0 * least_error * gradient, std::min(100.0, 100.0 * largest_error * gradient))});
 }
 
 }  // namespace gladstone

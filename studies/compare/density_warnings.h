@@ -18,7 +18,7 @@ void warn_of_reference_gradient(Reconstruction& result);
 /// Change of a density by the averaging over the interrogation windows.
 struct WindowEffect {
   double change = 0.0;  ///< rms change, estimated [kg/m^3]
-  double sigma = 0.0;   ///< rms standard uncertainty of the same nodes [kg/m^3]
+  double sigma = 0.0;   ///< rms standard uncertainty of the nodes for which `change` is estimated [kg/m^3]
 };
 
 /// Estimates the change of a density by the mean over windows of w_x x w_y, (w_x^2 d2/dx2 + w_y^2 d2/dy2) / 24 of the
@@ -31,12 +31,13 @@ WindowEffect estimate_window_effect(Reconstruction const& result);
 void warn_of_window(Reconstruction& result);
 
 /// Computes the rms gradient of the displacement [px/px], without the part that is due to noise. The displacement is
-/// the gradient of a potential: |grad u|^2 is div(u)^2 less curl(u)^2 on average over the field, and in these the noise
-/// of u and v cancels.
+/// the gradient of a potential, so that the mean of |grad u|^2 over the field equals that of div(u)^2 - curl(u)^2, in
+/// which the noise of u and v cancels.
 double compute_displacement_gradient(density::GradientMap const& projected, density::ProjectionOptics const& optics);
 
-/// Warns of displacement gradients from which on Eq. 9 has noticeable errors: it evaluates the density gradient where
-/// rays would meet the medium without deflection, while a deflection e moves this place by e Z_A Z_D / (Z_A + Z_D).
+/// Warns of displacement gradients that are so large that Eq. 9 has noticeable errors. Eq. 9 evaluates the density
+/// gradient where undeflected rays meet the medium, while a deflection e displaces this point by e Z_A Z_D / (Z_A +
+/// Z_D).
 void warn_of_displacement_gradient(Reconstruction& result, density::GradientMap const& projected,
                                    density::ProjectionOptics const& optics);
 

@@ -10,10 +10,10 @@
 namespace gladstone {
 namespace {
 
-/// Largest distance of pixels between which the displacement may be interpolated is half of this [px].
+/// Twice the largest distance between pixels from which the displacement may be interpolated [px].
 constexpr int coarsest_spacing_px = 8;
 
-/// Returns the coarsest spacing of nodes to begin with, in distances of nodes.
+/// Returns the spacing of the coarsest lattice, in units of the distance between nodes.
 int first_spacing(int spacing_px) {
   int spacing = 1;
   while (2 * spacing * spacing_px <= coarsest_spacing_px) spacing *= 2;
@@ -22,8 +22,8 @@ int first_spacing(int spacing_px) {
 
 }  // namespace
 
-Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px,
-                                TracedPixels traced) {
+Image<Vec2d> displacement_truth(Scene const& scene, RenderPlan const& plan, Renderer& renderer, TruthAt at,
+                                int spacing_px, TracedPixels traced) {
   GLADSTONE_EXPECTS(spacing_px >= 1);
   CameraSetup const& camera = scene.setup.camera;
   ComparisonKind const& kind = comparison_kind(scene.setup);
@@ -35,7 +35,7 @@ Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt 
     for (MapNode const& node : nodes)
       places.push_back({static_cast<double>(node.column) * spacing_px, static_cast<double>(node.row) * spacing_px});
     if (places.empty()) return {};
-    GroundTruth truth = kind.displacements(scene, renderer, places, at);
+    GroundTruth truth = kind.displacements(scene, plan, renderer, places, at);
     return {std::move(truth.displacement_px), std::move(truth.displacement_error_px)};
   };
   bool const all = traced == TracedPixels::all || kind.without_rays(scene);

@@ -26,7 +26,7 @@ enum class TracedPixels {
 ///                    its path)
 /// @param spacing_px  distance between nodes [px]
 /// @return [px], u right, v down; NaN: no light reaches the pixel from there
-Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px,
-                                TracedPixels traced = TracedPixels::adaptive);
+Image<Vec2d> displacement_truth(Scene const& scene, RenderPlan const& plan, Renderer& renderer, TruthAt at,
+                                int spacing_px, TracedPixels traced = TracedPixels::adaptive);
 
 }  // namespace gladstone

@@ -39,6 +39,12 @@ std::string undeformed_line(Comparison const& comparison) {
       rms("window"), rms("estimator"));
 }
 
+/// Formats the value of a measure in px, or of a fraction in per cent, as a column of the table.
+std::string cell(ErrorMeasure const& measure, ErrorSummary const& summary) {
+  double const value = summary[measure.name];
+  return measure.name.ends_with("_fraction") ? fmt::format(" {:7.2f} %", 100 * value) : fmt::format(" {:9.5f}", value);
+}
+
 }  // namespace
 
 std::string error_report(Comparison const& comparison) {
@@ -50,16 +56,19 @@ std::string error_report(Comparison const& comparison) {
   ComparisonKind const& kind = comparison_kind(comparison);
   for (ReferenceDisplacement const& one : kind.references) rows.push_back({one.row, one.of(comparison)});
   rows.push_back({"ray truth on the window", comparison.window.displacement_px});
-  std::string text = fmt::format("Measurement against   [px]  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u",
-                                 "bias v", "random u", "random v", "rms", "p95", "gross");
-  ErrorSummary last{};
+  std::string text = "Measurement against   [px] ";
+  for (ErrorMeasure const& measure : all_error_measures())
+    if (measure.heading) text += fmt::format(" {:>9}", measure.heading);
+  text += '\n';
+  ErrorSummary last;
   for (Row const& row : rows) {
     last = summarize_errors(comparison.measured.displacement_px, row.truth, comparison.mask);
-    text += fmt::format("  {:<25} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:7.2f} %\n", row.name,
-                        last.bias_u_px, last.bias_v_px, last.random_u_px, last.random_v_px, last.rms_px, last.p95_px,
-                        100 * last.gross_fraction);
+    text += fmt::format("  {:<25}", row.name);
+    for (ErrorMeasure const& measure : all_error_measures())
+      if (measure.heading) text += cell(measure, last);
+    text += '\n';
   }
-  text += fmt::format("  over {} of {} vectors; {} excluded for fewer than three {}\n", last.count,
+  text += fmt::format("  over {} of {} vectors; {} excluded for fewer than three {}\n", last.count(),
                       comparison.vectors_in_file(), comparison.window.left_out, kind.experiment.sources.many);
   if (comparison.left_out.all() > 0) text += "  also excluded: " + comparison.left_out.text() + '\n';
   if (!comparison.report.empty()) text += "  " + comparison.report + '\n';

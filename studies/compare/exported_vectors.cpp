@@ -65,7 +65,8 @@ ExportedVectors compute_map_for_export(std::string const& path, Renderer& render
   copy_provenance(Hdf5Reader(path), vectors.origin);
   std::string const folder = std::filesystem::path(path).parent_path().string();
   PreparedCase const prepared = prepare_stored_case(folder.empty() ? "." : folder);
-  vectors.field = vectors_of_map(displacement_truth(prepared.scene, renderer, at, spacing_px, traced), spacing_px);
+  vectors.field =
+      vectors_of_map(displacement_truth(prepared.scene, prepared.plan, renderer, at, spacing_px, traced), spacing_px);
   vectors.format = "gladstone truth";
   return vectors;
 }
@@ -106,11 +107,7 @@ ExportedVectors load_for_export(std::string const& path, std::string const& conv
   vectors.complete = file.complete;
   vectors.conventions = describe(file.conventions);
   vectors.field = apply_conventions(std::move(file.field), file.conventions, image_rows);
-  if (has_hdf5_ending(path) && !file.foreign) {
-    Hdf5Reader const own(path);
-    std::string const warnings = own.attribute("warnings");
-    if (!warnings.empty()) vectors.field.warnings = {warnings};
-  }
+  if (has_hdf5_ending(path) && !file.foreign) vectors.field.warnings = read_warnings(Hdf5Reader(path));
   return vectors;
 }
 

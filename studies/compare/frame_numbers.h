@@ -19,15 +19,15 @@ std::vector<NumberedName> split_names(std::vector<std::string> const& files);
 /// Returns true if the names follow one pattern.
 bool have_one_pattern(std::vector<NumberedName> const& names);
 
-/// Intervals between the numbers of images in their names, from which a missing image is known.
+/// Intervals between the numbers of images in their names, by which a missing image is detected.
 class FrameIntervals {
  public:
-  /// @param files  names of the images in their order; unless they differ in one number that increases, nothing is
-  /// known
+  /// @param files  names of the images in their order; if they do not differ in one increasing number, all intervals
+  /// are unknown
   explicit FrameIntervals(std::vector<std::string> const& files);
 
   /// Returns true if the interval from an image to the following one is longer than the smallest one. Always false if
-  /// less than half of the intervals are the smallest one, since the numbers then do not count images.
+  /// less than half of the intervals are the smallest one, since the numbers are then not consecutive.
   bool misses_next(std::size_t image) const { return usual_ > 0 && numbers_[image + 1] - numbers_[image] != usual_; }
   /// Returns the number that the image after this one should have.
   long long next(std::size_t image) const { return numbers_[image] + usual_; }

@@ -12,7 +12,7 @@ namespace {
 
 bool is_known(Vec2d value) { return std::isfinite(value.x) && std::isfinite(value.y); }
 
-/// Nodes of a lattice along an axis, and their weights at a place: Lagrange's interpolation.
+/// Nodes of a lattice along an axis, and their weights at a position: Lagrange's interpolation.
 struct Stencil {
   int first = 0, count = 1;
   std::array<double, 4> weight{1, 0, 0, 0};
@@ -80,7 +80,7 @@ class Refinement {
  private:
   struct Prediction {
     Vec2d value{};
-    bool at_border = false;  ///< some of the nodes that it requires are unknown, but not all
+    bool at_border = false;  ///< some, but not all, of the nodes required for the interpolation are unknown
   };
 
   static double tolerance(double error) { return refinement_tolerance + (error > 0 ? 4 * error : 0); }

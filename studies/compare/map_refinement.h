@@ -11,7 +11,7 @@ namespace gladstone {
 /// Values at nodes of a map, and their standard errors.
 struct MapSamples {
   std::vector<Vec2d> value;
-  std::vector<Vec2d> error;  ///< empty or NaN: negligible or unknown
+  std::vector<Vec2d> error;  ///< standard errors; empty: all are negligible; NaN: the error is unknown
 };
 
 /// Node of a map.
@@ -22,7 +22,8 @@ struct MapNode {
 /// Computes the values at nodes, some of which may be beyond the last column or row.
 using MapSampler = std::function<MapSamples(std::vector<MapNode> const& nodes)>;
 
-/// Deviation of an interpolated value, besides four standard errors, above which the nodes around are computed.
+/// Deviation of an interpolated value, in excess of four standard errors, above which the surrounding nodes are
+/// computed.
 inline constexpr double refinement_tolerance = 5e-4;
 
 /// Computes a map from few nodes. All nodes of a lattice of spacing `coarsest` / 2 are computed, and compared with

@@ -11,8 +11,8 @@
 
 namespace gladstone {
 
-/// Passes fields on in their order, which several threads compute in any order. The number of fields that wait for an
-/// earlier one is limited, so that the memory is bounded.
+/// Receives fields that several threads compute in any order, and passes them on in ascending order. The number of
+/// fields that wait for an earlier one is limited, so that the memory is bounded.
 class OrderedFields {
  public:
   /// @param window   a field is computed once fewer than `window` fields before it are missing

@@ -70,13 +70,6 @@ bool has_any_vector(DisplacementField const& field) {
   return false;
 }
 
-std::vector<std::string> split_lines(std::string const& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
 }  // namespace
 
 PairCorrelation::PairCorrelation(CorrelationFile const& settings, SequenceSize size,
@@ -99,7 +92,7 @@ PairVectors PairCorrelation::run(PairRecord& record, std::string const& path, st
     PairVectors vectors = finished ? std::move(*finished) : correlate(std::move(frames), record, path);
     bool const any = has_any_vector(vectors.field);
     record.state = any ? PairState::done : PairState::no_valid_vector;
-    if (!any) record.error = "none of its vectors is valid; check that both frames show one scene";
+    if (!any) record.error = "all of its vectors are invalid; check that both frames show one scene";
     vectors.field = without_details(std::move(vectors.field));
     return vectors;
   } catch (Interrupted const&) {
@@ -134,15 +127,14 @@ PairCorrelation::Frames PairCorrelation::read_frames(PairRecord const& record, P
   return frames;
 }
 
-std::optional<SequenceImage> PairCorrelation::read_neighbour(SequenceFrame const* frame,
-                                                             std::vector<std::string>& warnings) const {
+std::optional<SequenceImage> PairCorrelation::read_neighbour(SequenceFrame const* frame, Warnings& warnings) const {
   if (!frame) return std::nullopt;
   try {
     SequenceImage image = read_sequence_image(*frame);
     size_.require(image.levels, frame->name());
     return image;
   } catch (DataError const& error) {
-    warnings.push_back("tracks extend over fewer frames: " + format_user_message(error));
+    warnings.push_back({WarningCode::incomplete, error.place(), "tracks extend over fewer frames: " + error.message()});
     return std::nullopt;
   }
 }
@@ -168,8 +160,8 @@ PairVectors PairCorrelation::correlate(Frames frames, PairRecord& record, std::s
   throw_if_interrupted();  // the measurement may be incomplete
   DisplacementField& field = measurement.field;
   field.warnings.insert(field.warnings.begin(), frames.warnings.begin(), frames.warnings.end());
-  if (std::string advice = locking_advice(pair.reference()); frames_correlate(field) && !advice.empty())
-    field.warnings.push_back(std::move(advice));
+  if (auto const advice = locking_advice(pair.reference()); advice && frames_correlate(field))
+    field.warnings.push_back(*advice);
   record.warnings = field.warnings;
   record_uncertainty(field, settings_.settings, CorrelatedFrames::sequence);
   if (tracks_dots()) vectors.dots.origin = origin(sources, measurement.device);
@@ -191,7 +183,7 @@ std::optional<PairVectors> PairCorrelation::read_finished(std::string const& pat
       Hdf5Reader const file(name);
       for (char const* const frame : {"settings", "reference", "flow", "before", "after"})
         if (file.attribute(std::string(frame) + "_sha256") != hashes.sha256(frame)) return std::nullopt;
-      if (name == path) record.warnings = split_lines(file.attribute("warnings"));
+      if (name == path) record.warnings = read_warnings(file);
     }
     vectors.field = read_vectors(path).field;
     if (vectors.field.size() != final_grid(settings_.settings, size_.columns, size_.rows).size()) return std::nullopt;

@@ -7,6 +7,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 #include "analysis/vectors/track_vectors.h"
+#include "render/base/warning.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
@@ -24,13 +25,14 @@ struct PairNeighbours {
 /// Dots or particles of a pair; none unless the method tracks them.
 struct PairDots {
   DisplacementField vectors;
-  std::optional<std::vector<std::int64_t>> stored_tracks;  ///< of the file of an earlier run; nullopt: not yet stored
+  std::optional<std::vector<std::int64_t>> stored_tracks;  ///< track numbers in the file of an earlier run; nullopt:
+                                                           ///< not yet stored
   FileOrigin origin;
 };
 
 /// Vectors of a pair.
 struct PairVectors {
-  DisplacementField field;  ///< without the data that the statistics do not use; empty if the pair failed
+  DisplacementField field;  ///< vectors without the data that the statistics do not use; empty if the pair failed
   PairDots dots;
 };
 
@@ -47,8 +49,8 @@ class PairCorrelation {
 
   /// Correlates a pair, unless the files contain the vectors of the same frames and settings, and sets its record. A
   /// pair that fails has a record with the reason.
-  /// @param path        file of its vectors
-  /// @param dots_path   file of its dots, which the caller writes
+  /// @param path        file of the pair's vectors
+  /// @param dots_path   file of the pair's dots, which the caller writes
   /// @param neighbours  frames over which the tracks of its particles extend. One that is unreadable or of another size
   ///                    is not used, and the record contains a warning
   /// @throws Interrupted, OutputError, DeviceError, which concern all pairs
@@ -60,19 +62,19 @@ class PairCorrelation {
   struct Frames {
     SequenceImage reference, flow;
     std::optional<SequenceImage> before, after;
-    std::vector<std::string> warnings;
+    Warnings warnings;
   };
 
   bool tracks_dots() const;
   FileOrigin origin(SourceFiles sources, std::string const& device) const;
   Frames read_frames(PairRecord const& record, PairNeighbours const& neighbours) const;
   /// @return nullopt with a warning if the frame is not suitable
-  std::optional<SequenceImage> read_neighbour(SequenceFrame const* frame, std::vector<std::string>& warnings) const;
+  std::optional<SequenceImage> read_neighbour(SequenceFrame const* frame, Warnings& warnings) const;
   PairVectors correlate(Frames frames, PairRecord& record, std::string const& path) const;
   /// Returns the hashes that a file of vectors records: those in common, and those of the frames.
   SourceFiles hashes(Frames const& frames) const;
   /// Reads the vectors of an earlier run.
-  /// @param hashes  of this pair and its settings
+  /// @param hashes  hashes of the pair's frames and settings
   /// @return nullopt if they are missing or damaged, or if they belong to other frames or settings
   std::optional<PairVectors> read_finished(std::string const& path, std::string const& dots_path,
                                            SourceFiles const& hashes, PairRecord& record) const;

@@ -77,7 +77,7 @@ class SheetPoints {
   Pose<double> plane_;
   std::vector<Vec2d> const& wanted_;
   std::vector<std::optional<ImagedPoint>> seen_;
-  std::vector<Vec2d> place_;  // at mid-time, on the plane [m]
+  std::vector<Vec2d> place_;  // positions at mid-time, on the plane [m]
   double diameter_ = 0;
   ParticleVelocity velocity_;
 };
@@ -90,19 +90,20 @@ bool without_medium(Scene const& scene) {
 enum class SeenThrough { medium, ambient };
 
 /// Traces the particles whose images coincide with the points.
-GroundTruth trace_points(Scene const& scene, Renderer& renderer, SheetPoints here, TruthAt at, SeenThrough through) {
-  auto const trace = [&](Scene const& with_rays) {
-    return renderer.render_particles(with_rays, here.particles(), ParticleLight::equal, RenderImages::no).truth;
+GroundTruth trace_points(Scene const& scene, RenderPlan const& plan, Renderer& renderer, SheetPoints here, TruthAt at,
+                         SeenThrough through) {
+  auto const trace = [&](RenderPlan const& with_rays) {
+    return renderer.render_particles(scene, with_rays, here.particles(), ParticleLight::equal, RenderImages::no).truth;
   };
   bool const ambient = through == SeenThrough::ambient;
-  Scene rough = scene;
-  rough.rays_per_dot = std::min(scene.rays_per_dot, rough_rays);
+  RenderPlan rough = plan;
+  rough.rays = std::min(plan.rays, rough_rays);
   for (int round = 0; round < correction_rounds; ++round) {
     GroundTruth const truth = trace(rough);
     here.correct(ambient ? truth.particles.reference_ambient_px : truth.reference_px,
                  ambient ? truth.particles.displacement_ambient_px : truth.displacement_px, at);
   }
-  return trace(scene);
+  return trace(plan);
 }
 
 /// Computes the displacements of the particles whose pinhole projections coincide with the points. With an ideal lens
@@ -131,16 +132,16 @@ std::vector<Vec2d> project_points(Scene const& scene, SheetPoints here, TruthAt 
 
 }  // namespace
 
-ParticlePoints particle_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
-                               TruthAt at) {
+ParticlePoints particle_points(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                               std::vector<Vec2d> const& places_px, TruthAt at) {
   SheetPoints const start(scene, places_px);
   ParticlePoints points;
   points.flow_px = start.flow_px();
-  points.seen = trace_points(scene, renderer, start, at, SeenThrough::medium);
+  points.seen = trace_points(scene, plan, renderer, start, at, SeenThrough::medium);
   points.ambient_px =
       without_medium(scene)
           ? points.seen.displacement_px
-          : trace_points(scene, renderer, start, at, SeenThrough::ambient).particles.displacement_ambient_px;
+          : trace_points(scene, plan, renderer, start, at, SeenThrough::ambient).particles.displacement_ambient_px;
   return points;
 }
 
@@ -148,11 +149,11 @@ bool has_projected_displacements(Scene const& scene) {
   return without_medium(scene) && scene.setup.has_closed_form_layout();
 }
 
-GroundTruth particle_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
-                                   TruthAt at) {
+GroundTruth particle_displacements(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                                   std::vector<Vec2d> const& places_px, TruthAt at) {
   SheetPoints start(scene, places_px);
   if (!has_projected_displacements(scene))
-    return trace_points(scene, renderer, std::move(start), at, SeenThrough::medium);
+    return trace_points(scene, plan, renderer, std::move(start), at, SeenThrough::medium);
   GroundTruth truth;
   truth.displacement_px = project_points(scene, std::move(start), at);
   return truth;

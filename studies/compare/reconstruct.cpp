@@ -102,11 +102,12 @@ void warn_of_aperture(Reconstruction& result, density::DensityIntegrator const& 
     ++count;
   }
   if (!(changes > largest_ratio * largest_ratio * variances) || count == 0) return;
-  result.warnings.push_back(fmt::format(
-      "the aperture cone dominates the error of the density (averaging over it changes the density by at least {:.2g} "
-      "kg/m^3 rms, {:.2g} times the standard uncertainty, which does not contain it); use --deconvolve {:g}, or a "
-      "larger f-number",
-      std::sqrt(changes / count), std::sqrt(changes / variances), gain));
+  result.warnings.push_back(
+      {WarningCode::low_accuracy, "lens.f_number",
+       fmt::format("the aperture cone dominates the error of the density (averaging over it changes the density by at "
+                   "least {:.2g} kg/m^3 rms, {:.2g} times the standard uncertainty, which does not contain it); use "
+                   "--deconvolve {:g}, or a larger f-number",
+                   std::sqrt(changes / count), std::sqrt(changes / variances), gain)});
 }
 
 /// Returns the borders of the image across an axis, in the mid-plane of the medium [m].
@@ -119,7 +120,7 @@ std::array<double, 2> find_axis_range(Setup const& setup, AxisOption const& axis
 }
 
 /// Integrates a mean gradient with the reference density, and propagates the uncertainty of the vectors.
-/// @param result  with overlap and reference_density
+/// @param result  reconstruction whose overlap and reference_density are set
 Reconstruction integrate_plane(Reconstruction result, density::GradientMap const& map, Setup const& setup,
                                ReconstructOptions const& options) {
   using namespace density;
@@ -188,17 +189,19 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
       options.overlap ? density::WindowOverlap::from_fraction(*options.overlap) : determine_overlap(field, window_px);
   result.reference_density = options.reference_density.value_or(setup.medium.ambient_density);
   if (projected.map.sigma.empty())
-    result.warnings.emplace_back(
-        "the vectors have no uncertainty, so that the density has none; correlate with an "
-        "uncertainty method, e.g. --set correlate.uncertainty=correlation_statistics");
+    result.warnings.push_back({WarningCode::incomplete, "correlate.uncertainty",
+                               "the vectors have no uncertainty, so that the density has none; correlate with an "
+                               "uncertainty method, e.g. --set correlate.uncertainty=correlation_statistics"});
   if (projected.without_sigma > 0)
-    result.warnings.push_back(fmt::format("{} vectors have no uncertainty; the largest of the others is used for them",
-                                          projected.without_sigma));
+    result.warnings.push_back({WarningCode::incomplete, "correlate.uncertainty",
+                               fmt::format("{} vectors have no uncertainty; the largest of the others is used for them",
+                                           projected.without_sigma)});
   if (setup.camera.distorted())
-    result.warnings.emplace_back(
-        "the distortion of the lens is neglected; undistort the images for accurate positions");
+    result.warnings.push_back({WarningCode::approximated, "lens",
+                               "the distortion of the lens is neglected; undistort the images for accurate positions"});
   if (options.deconvolution_gain && setup.lens.focus != Focus::target)
-    result.warnings.emplace_back("the deconvolution assumes focus on the dots, but lens.focus is another plane");
+    result.warnings.push_back({WarningCode::approximated, "lens.focus",
+                               "the deconvolution assumes focus on the dots, but the focus is on another plane"});
   warn_of_displacement_gradient(result, projected.map, optics);
   result = options.axis ? invert_flow(std::move(result), projected.map, find_axis_range(setup, *options.axis), options)
                         : integrate_plane(std::move(result),

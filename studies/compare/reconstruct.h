@@ -8,6 +8,7 @@
 #include "analysis/density/axisymmetric_inversion.h"
 #include "analysis/density/density_integrator.h"
 #include "analysis/density/projected_gradient.h"
+#include "render/base/warning.h"
 #include "render/files/source_files.h"
 #include "render/scene/setup.h"
 #include "studies/compare/compare.h"
@@ -29,20 +30,20 @@ struct AxisOption {
 
 /// Options of a reconstruction of density.
 struct ReconstructOptions {
-  std::string vectors;                      ///< path of the vectors; empty: CASE/vectors.h5
-  std::optional<std::string> conventions;   ///< as given by the user; empty: those of the file's format
-  std::vector<ReferenceRegion> reference;   ///< gauge of the integration; empty for axisymmetric flows
-  std::optional<double> reference_density;  ///< reference density; empty: ambient density of the setup [kg/m^3]
-  double reference_sigma = 0.0;             ///< standard uncertainty of the reference density [kg/m^3]
-  double scale_uncertainty = 0.0;           ///< combined relative uncertainty of M, Z_D, K, p and thickness [1]
-  density::IntegrationMethod method = density::IntegrationMethod::weighted_least_squares;
+  std::string vectors;                       ///< path of the vectors; empty: CASE/vectors.h5
+  std::optional<std::string> conventions;    ///< as given by the user; empty: those of the file's format
+  std::vector<ReferenceRegion> reference;    ///< gauge of the integration; empty for axisymmetric flows
+  std::optional<double> reference_density;   ///< reference density; empty: ambient density of the setup [kg/m^3]
+  double reference_sigma = 0.0;              ///< standard uncertainty of the reference density [kg/m^3]
+  double scale_uncertainty = 0.0;            ///< combined relative uncertainty of M, Z_D, K, p and thickness [1]
+  std::string method = "wls";                ///< one of density::integration_methods()
   std::optional<double> overlap;             ///< of the interrogation windows, 0 to below 1 [1]; empty: [correlate]
   std::optional<double> deconvolution_gain;  ///< largest gain of the aperture's deconvolution [1]; empty: none
   std::optional<AxisOption> axis;            ///< axisymmetric flow; empty: planar integration
-  density::AbelMethod abel = density::AbelMethod::direct;
-  std::optional<double> lambda;  ///< parameter of AbelMethod::tikhonov [1]; empty: by cross-validation
+  std::string abel = "direct";               ///< one of density::abel_methods()
+  std::optional<double> lambda;  ///< parameter of a regularised Abel inversion [1]; empty: by cross-validation
   std::size_t samples = 400;     ///< number of random samples for the uncertainty of large grids
-  bool propagate = true;         ///< compute the uncertainty from the vectors
+  bool propagate = true;         ///< true: compute the uncertainty from that of the vectors
   bool budget = false;           ///< split the error of a rendered case into its causes
 };
 
@@ -55,7 +56,7 @@ struct DensityTerm {
 /// Properties of an axisymmetric inversion; see density::AxisymmetricDensity.
 struct AxisymmetryResult {
   density::AxisDirection direction = density::AxisDirection::vertical;
-  density::SymmetryAxis axis;    ///< [m]; sigma is NaN if the axis was given
+  density::SymmetryAxis axis;    ///< axis of symmetry [m]; sigma is NaN if the axis was given
   double lambda = 0.0;           ///< regularisation parameter [1]; 0: none
   double asymmetry = 0.0;        ///< rms of the even part of the gradient about the axis over that of the odd part [1]
   double border_gradient = 0.0;  ///< rms of the gradient at the largest radii over that of all radii [1]
@@ -76,14 +77,14 @@ struct Reconstruction {
   std::vector<std::int64_t> reference;  ///< 1: node of given density
   std::vector<double> truth;            ///< density of a rendered case [kg/m^3, grid.size()]; empty: unknown
   std::vector<DensityTerm> budget;      ///< causes of the error; empty: not requested
-  double reference_density = 0.0;       ///< [kg/m^3]
+  double reference_density = 0.0;       ///< reference density [kg/m^3]
   density::WindowOverlap overlap;       ///< overlap of the windows, which correlates the vectors' errors
   double white_noise_gain = 1.0;        ///< noise amplification by the deconvolution [1]; 1: none
   std::size_t samples = 0;              ///< number of random samples for sigma; 0: exact
   std::optional<AxisymmetryResult> axisymmetry;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string setup;         ///< resolved setup
-  std::uint64_t seed = 0;    ///< of the rendering
+  std::uint64_t seed = 0;    ///< random seed of the rendering
   std::string vectors;       ///< path of the vectors
   SourceFiles sources = {};  ///< setup, vectors, and truth
 };
@@ -113,17 +114,17 @@ density::ProjectionOptics make_projection_optics(Setup const& setup);
 Reconstruction reconstruct_density(DisplacementField const& field, Setup const& setup, double window_px,
                                    ReconstructOptions const& options);
 
-/// What is known of the measurement that reconstruct_case() reads; null: read or computed.
+/// Parts of a measurement that the caller has read or computed before reconstruct_case(); null: it does so itself.
 struct KnownMeasurement {
   CaseSetup const* setup = nullptr;
-  Comparison const* comparison = nullptr;  ///< of the same vectors
+  Comparison const* comparison = nullptr;  ///< comparison of the same vectors
 };
 
 /// Reconstructs density from the vectors of a CASE, or of a setup whose images were measured, and for a rendered CASE
 /// adds the true density and, with options.budget, the causes of the error, for which it compares the vectors with
 /// truth and theory (compare_case()). Writes nothing.
 /// @param place   case folder, with or without truth.h5, or a setup (TOML) together with options.vectors
-/// @param device  for the comparison
+/// @param device  device of the comparison
 /// @throws DataError, SetupError  as reconstruct_density(), and for files that are missing, invalid, or of other frames
 Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device,
                                 KnownMeasurement known = {});

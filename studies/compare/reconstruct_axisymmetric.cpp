@@ -87,15 +87,17 @@ Reconstruction invert_flow(Reconstruction result, density::GradientMap const& pr
   for (double const density : result.density) result.region.push_back(std::isfinite(density) ? 0 : -1);
   result.reference.assign(result.grid.size(), 0);
   if (half.border_gradient > noticeable_border_gradient)
-    result.warnings.push_back(fmt::format(
-        "the gradient at the largest radii is {:.0f} % of that of all radii, so that the flow extends beyond "
-        "the vectors and the density is biased; enlarge the field of view",
-        100.0 * half.border_gradient));
+    result.warnings.push_back(
+        {WarningCode::unsuitable, "",
+         fmt::format("the gradient at the largest radii is {:.0f} % of that of all radii, so that the flow extends "
+                     "beyond the vectors and the density is biased; enlarge the field of view",
+                     100.0 * half.border_gradient)});
   if (half.asymmetry > noticeable_asymmetry)
     result.warnings.push_back(
-        fmt::format("the even part of the gradient about the axis is {:.0f} % of the odd part: the axis is wrong, the "
-                    "flow is not axisymmetric, or the vectors are noisy; check --axis",
-                    100.0 * half.asymmetry));
+        {WarningCode::unreliable, "",
+         fmt::format("the even part of the gradient about the axis is {:.0f} % of the odd part: the axis is wrong, the "
+                     "flow is not axisymmetric, or the vectors are noisy; check --axis",
+                     100.0 * half.asymmetry)});
   return result;
 }
 

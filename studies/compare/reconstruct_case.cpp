@@ -12,6 +12,7 @@
 #include "studies/case/case.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/truth_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/compared_files.h"
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/density_budget.h"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 /// Files of a reconstruction.
 struct ReconstructedFiles {
   std::string setup, vectors;
-  std::string truth;  ///< empty: images of an experiment
+  std::string truth;  ///< path of the truth; empty: images of an experiment
   SourceFiles sources;
 };
 
@@ -113,10 +114,10 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
   }
   bool const is_assumed = files.truth.empty() && loaded.setup.medium.automatic_thickness && !result.axisymmetry;
   if (is_assumed)
-    result.warnings.push_back(
-        fmt::format("medium.thickness_mm is not given in {}, so that {:.4g} mm is assumed (the "
-                    "density is proportional to its inverse); set it to the depth of the flow",
-                    files.setup, 1e3 * loaded.setup.medium.thickness));
+    result.warnings.push_back({WarningCode::assumed, "medium.thickness_mm",
+                               fmt::format("is not given in {}, so that {:.4g} mm is assumed (the density is "
+                                           "proportional to its inverse); set it to the depth of the flow",
+                                           files.setup, 1e3 * loaded.setup.medium.thickness)});
   bool const has_sigma = std::any_of(result.sigma_random.begin(), result.sigma_random.end(),
                                      [](double sigma) { return std::isfinite(sigma); });
   if (vectors.foreign && !options.overlap && has_sigma)
@@ -128,7 +129,7 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
   result.seed = loaded.setup.render.seed;
   result.vectors = files.vectors;
   result.sources = std::move(files.sources);
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  log_warnings(result.warnings);
   return result;
 }
 

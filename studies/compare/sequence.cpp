@@ -33,17 +33,14 @@ namespace {
 /// Pairs per thread whose vectors may wait for those of an earlier pair, before they are added to the statistics.
 constexpr std::size_t waiting_per_thread = 2;
 
-/// Summarises warnings that differ only in their numbers and in the names of the frames.
-std::vector<std::string> summarise_warnings(std::vector<PairRecord> const& pairs) {
+/// Summarises warnings of the same code and place, where all frames are one place.
+Warnings summarise_warnings(std::vector<PairRecord> const& pairs) {
   WarningKinds kinds;
   for (PairRecord const& record : pairs) {
-    for (std::string const& warning : record.warnings) {
-      std::string kind = warning;
-      for (SequenceFrame const* frame : {&record.pair.reference, &record.pair.flow}) {
-        auto const at = frame->path.empty() ? std::string::npos : kind.find(frame->name());
-        if (at != std::string::npos) kind.erase(at, frame->name().size());
-      }
-      kinds.add(record.pair.vectors, warning, std::move(kind));
+    for (Warning const& warning : record.warnings) {
+      bool const of_frame = !warning.place.empty() &&
+                            (warning.place == record.pair.reference.name() || warning.place == record.pair.flow.name());
+      kinds.add(record.pair.vectors, warning, of_frame ? "frame" : warning.place);
     }
   }
   return kinds.summary();
@@ -150,7 +147,8 @@ class SequenceRun {
   void correlate_all(PairCorrelation const& correlation, SequenceFolder const& folder) {
     PairProgress progress("correlate pairs", result_.pairs.size(), shown_);
     auto const threads = static_cast<std::size_t>(thread_count());
-    std::vector<PairDots> dots(result_.pairs.size());  // of the pairs whose fields wait for an earlier one
+    std::vector<PairDots> dots(result_.pairs.size());  // dots of the pairs whose fields wait for that of an earlier
+                                                       // pair
     OrderedFields fields(waiting_per_thread * threads, [&](std::size_t k, DisplacementField const& field) {
       result_.pairs[k].has_vectors() ? statistics_.add(field) : statistics_.skip();
       if (tracks_dots()) store_dots(folder, result_.pairs[k], std::exchange(dots[k], {}));
@@ -201,11 +199,12 @@ class SequenceRun {
     if (count_with_vectors() > 0) {
       SequenceMoments const& moments = result_.statistics = statistics_.moments();
       if (moments.unresolved * 10 > result_.vectors())
-        result_.warnings.push_back(fmt::format(
-            "at {} of {} vectors the fluctuations are still correlated after {} frames, the longest lag that was "
-            "evaluated, so that the standard errors of the statistics are too small; record a longer sequence, or "
-            "fewer frames per second",
-            moments.unresolved, result_.vectors(), moments.lags));
+        result_.warnings.push_back(
+            {WarningCode::low_accuracy, "",
+             fmt::format("at {} of {} vectors the fluctuations are still correlated after {} frames, the longest lag "
+                         "that was evaluated, so that the standard errors of the statistics are too small; record a "
+                         "longer sequence, or fewer frames per second",
+                         moments.unresolved, result_.vectors(), moments.lags)});
       SourceFiles sources;
       sources.add_known("settings", sources_.sha256("settings"));
       sources.add_known("sequence", hash_pairs());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/vectors/sequence_statistics.h"
+#include "render/base/warning.h"
 #include "studies/case/backend.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/sequence_frames.h"
@@ -23,9 +24,10 @@ inline constexpr char const* dots = "dots";
 /// Settings of a sequence.
 struct SequenceSettings {
   Pairing pairing = Pairing::pairs;
-  CorrelationFile correlation;  ///< for PreparedSet::sequence; correlate_sequence() computes its backgrounds
+  CorrelationFile correlation;  ///< correlation settings for PreparedSet::sequence; correlate_sequence() computes the
+                                ///< backgrounds
 };
-/// Reads the settings of a sequence: as read_correlation_file(), or default_correlation() if `path` is empty, but
+/// Reads the settings of a sequence like read_correlation_file(), or like default_correlation() if `path` is empty, but
 /// "background" steps may omit `frame`, and then subtract the background of the sequence.
 /// @throws SetupError; DataError if the vectors would not be on a grid
 SequenceSettings read_sequence_settings(Pairing pairing, std::string const& path,
@@ -38,10 +40,10 @@ enum class PairState { pending, done, no_valid_vector, failed };
 struct PairRecord {
   SequencePair pair;
   PairState state = PairState::pending;
-  bool resumed = false;  ///< its vectors were computed by an earlier run
+  bool resumed = false;  ///< the vectors of the pair were computed by an earlier run
   std::string error;     ///< reason of the state `failed` or `no_valid_vector`
   std::string reference_sha256, flow_sha256;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 
   bool has_vectors() const { return state == PairState::done || state == PairState::no_valid_vector; }
 };
@@ -50,9 +52,9 @@ struct PairRecord {
 struct SequenceResult {
   std::vector<PairRecord> pairs;
   std::string device;
-  double seconds = 0;                 ///< wall time [s]
-  SequenceMoments statistics;         ///< without points if no pair has vectors
-  std::vector<std::string> warnings;  ///< about several pairs at once, or about the statistics
+  double seconds = 0;          ///< wall time [s]
+  SequenceMoments statistics;  ///< without points if no pair has vectors
+  Warnings warnings;           ///< about several pairs at once, or about the statistics
 
   std::size_t vectors() const { return statistics.position_px.size(); }  ///< vectors per field; 0: no field
   /// Counts the pairs of a state, and those with vectors of an earlier run.

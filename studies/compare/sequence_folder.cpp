@@ -1,7 +1,6 @@
 #include "studies/compare/sequence_folder.h"
 
 #include <fcntl.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +15,8 @@
 #include "render/files/output_destination.h"
 #include "render/files/output_file.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_json.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -113,7 +114,7 @@ void SequenceFolder::make_folder(std::string const& name) const {
 
 void remove_damaged_result(std::string const& path) {
   if (file_kind(path) != damaged_hdf5) return;
-  spdlog::warn("{}: the file is damaged, and is computed again", path);
+  log_warning({WarningCode::incomplete, path, "the file is damaged, and is computed again"});
   std::error_code ignored;  // the file that replaces it reports the error
   fs::remove(path, ignored);
 }
@@ -125,7 +126,8 @@ void write_sequence_state(std::string const& path, SequenceState const& state, s
                          {"reference", describe_frame(record.pair.reference, record.reference_sha256)},
                          {"flow", describe_frame(record.pair.flow, record.flow_sha256)},
                          {"state", state_name(record.state)},
-                         {"warnings", record.warnings}};
+                         {"warnings", to_strings(record.warnings)},
+                         {"warning_records", record.warnings}};
     if (!record.error.empty()) entry["error"] = record.error;
     list.push_back(std::move(entry));
   }

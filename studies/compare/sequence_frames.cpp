@@ -145,7 +145,7 @@ std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::ve
   return pairs;
 }
 
-/// Returns a pair of an image whose next one is missing.
+/// Returns an incomplete pair, of an image whose partner is missing.
 SequencePair without_partner(SequenceFrame const& frame, std::string const& why) {
   return {frame, {}, {}, fmt::format("{}: {} ({})", frame.name(), no_partner, why)};
 }
@@ -203,7 +203,7 @@ Pairing parse_pairing(std::string const& name) {
   if (name.empty() || name == "pairs") return Pairing::pairs;
   if (name == "reference") return Pairing::reference;
   if (name == "consecutive") return Pairing::consecutive;
-  throw DataError(ErrorCode::arguments, "correlate",
+  throw DataError(ErrorCode::arguments, "--pairing",
                   "\"" + name + "\" is not a pairing; choose \"pairs\", \"reference\" or \"consecutive\"");
 }
 
@@ -229,7 +229,7 @@ std::vector<std::vector<std::string>> list_sequence_files(std::vector<std::strin
   }
   if (pairing == Pairing::pairs && lists.size() == 1) lists = split_by_name(lists.front());
   if (pairing == Pairing::pairs && lists.size() > 2)
-    throw DataError(ErrorCode::arguments, "correlate",
+    throw DataError(ErrorCode::arguments, "images",
                     fmt::format("got {} lists of images (pairs have a first and a second image); give two "
                                 "patterns, or one folder or file with all images",
                                 lists.size()));

@@ -37,7 +37,7 @@ struct SequenceFrame {
 struct SequencePair {
   SequenceFrame reference;  ///< frame A
   SequenceFrame flow;       ///< frame B
-  std::string vectors;      ///< file name of its vectors, e.g. "A_0001.h5"
+  std::string vectors;      ///< file name of the pair's vectors, e.g. "A_0001.h5"
   std::string problem;      ///< reason why the pair is incomplete, without a partner; empty: complete
 };
 

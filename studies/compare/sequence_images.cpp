@@ -26,7 +26,7 @@ Image<double> compute_background_image(std::string const& statistic, std::vector
       size.require(image.levels, frames[k].name());
       if (count_not_finite(image.levels) > 0) return std::nullopt;
       return std::move(image.levels);
-    } catch (DataError const&) {  // its pair reports the problem
+    } catch (DataError const&) {  // the problem is reported when the pair is correlated
       return std::nullopt;
     }
   });
@@ -40,15 +40,17 @@ SequenceImage read_sequence_image(SequenceFrame const& frame) {
   image.levels = frame.pages > 1 ? frame.located->read(frame.page, &metadata) : read_image(frame.path, &metadata);
   image.sha256 = pixel_sha256(image.levels, metadata.sample_bits);
   if (metadata.channels >= 3)
-    image.warnings.push_back(frame.name() + " is a colour image: its luminance (Rec. 709) is correlated");
+    image.warnings.push_back(
+        {WarningCode::assumed, frame.name(), "is a colour image: its luminance (Rec. 709) is correlated"});
   if (metadata.orientation != 1)
-    image.warnings.push_back(fmt::format("{} is stored rotated or mirrored (Orientation {}), and was rotated upright",
-                                         frame.name(), metadata.orientation));
+    image.warnings.push_back(
+        {WarningCode::assumed, frame.name(),
+         fmt::format("is stored rotated or mirrored (Orientation {}), and was rotated upright", metadata.orientation)});
   if (std::size_t const bad = count_not_finite(image.levels); bad == image.levels.size()) {
     throw DataError(ErrorCode::invalid_value, frame.name(), "all of its pixels are nan or infinite; export it again");
   } else if (bad > 0) {
-    image.warnings.push_back(
-        fmt::format("{}: {} pixels are nan or infinite, and are excluded from their windows", frame.name(), bad));
+    image.warnings.push_back({WarningCode::excluded, frame.name(),
+                              fmt::format("{} pixels are nan or infinite, and are excluded from their windows", bad)});
   }
   return image;
 }
@@ -82,7 +84,7 @@ SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs) {
           candidates.push_back({{columns, rows, frame->name()}, 1});
         else
           ++known->frames;
-      } catch (DataError const&) {  // its pair reports the problem
+      } catch (DataError const&) {  // the problem is reported when the pair is correlated
         if (!first_error) first_error = std::current_exception();
       }
     }

@@ -5,6 +5,7 @@
 
 #include "analysis/preparation/sequence_background.h"
 #include "render/base/image.h"
+#include "render/base/warning.h"
 #include "studies/compare/sequence_frames.h"
 
 namespace gladstone {
@@ -13,14 +14,14 @@ namespace gladstone {
 struct SequenceImage {
   Image<double> levels;
   std::string sha256;  ///< pixel_sha256()
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
-/// Reads a frame. @throws DataError, also if none of its pixels is finite
+/// Reads a frame. @throws DataError, also if all pixels are NaN or infinite
 SequenceImage read_sequence_image(SequenceFrame const& frame);
 
 /// Size of the frames of a sequence.
 struct SequenceSize {
-  int columns = 0, rows = 0;  ///< [px]
+  int columns = 0, rows = 0;  ///< size of a frame [px]
   std::string frame;          ///< name of the first frame of this size
 
   /// @throws DataError if a frame has another size, with the names of both
@@ -28,7 +29,7 @@ struct SequenceSize {
 };
 
 /// Finds the commonest size of the frames of all pairs, and of two equally frequent ones that of the earlier frame.
-/// Reads no pixels; unreadable frames do not count.
+/// Reads no pixels; unreadable frames are ignored.
 /// @param pairs  pairs without problem
 /// @throws DataError of the first frame if none is readable; Interrupted
 SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs);

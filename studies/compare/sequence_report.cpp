@@ -1,7 +1,7 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "render/base/error.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/sequence.h"
 
 namespace gladstone {
@@ -11,14 +11,15 @@ void report_sequence(SequenceResult const& result, std::string const& folder) {
   std::size_t failed = 0;
   for (PairRecord const& record : result.pairs) {
     if (record.error.empty() || ++failed > most_named) continue;
-    spdlog::warn("{}: {}", record.pair.vectors, record.error);
+    log_warning({WarningCode::failed, record.pair.vectors, record.error});
   }
-  if (failed > most_named) spdlog::warn("{} further pairs failed; sequence.json lists them", failed - most_named);
+  if (failed > most_named)
+    log_warning({WarningCode::failed, "",
+                 fmt::format("{} further pairs failed; sequence.json lists them", failed - most_named)});
   if (result.count(PairState::done) == 0)
     throw DataError(ErrorCode::undetermined, folder,
-                    fmt::format("none of the {} pairs could be correlated; the first: {}", result.pairs.size(),
-                                result.pairs.front().error));
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+                    fmt::format("all {} pairs failed; the first: {}", result.pairs.size(), result.pairs.front().error));
+  log_warnings(result.warnings);
 }
 
 }  // namespace gladstone

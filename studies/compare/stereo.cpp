@@ -1,7 +1,6 @@
 #include "studies/compare/stereo.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +17,9 @@
 #include "render/base/units.h"
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/stereo_alignment.h"
 #include "studies/compare/stereo_input.h"
@@ -151,7 +152,7 @@ std::array<std::string, 2> find_stereo_inputs(std::array<std::string, 2> const& 
   std::vector<std::string> names;
   if (fs::is_directory(folder, error)) {
     require_case(folder);
-    names = camera_names(SetupDocument::from_file((fs::path(folder) / case_file::setup).string()));
+    names = camera_names(read_setup_document((fs::path(folder) / case_file::setup).string()));
   }
   if (names.size() != 2)
     throw DataError(ErrorCode::wrong_format, folder,
@@ -240,7 +241,7 @@ StereoMeasurement measure_stereo(StereoOptions options, Backend const& device) {
   result.setup = a.loaded->document.resolved();
   result.seed = a.loaded->setup.render.seed;
   result.warnings = find_stereo_warnings(result);
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  log_warnings(result.warnings);
   return result;
 }
 

@@ -1,7 +1,6 @@
 #include "studies/compare/stereo_cameras.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -40,11 +40,11 @@ void warn_of_other_optics(Hdf5Reader const& file, std::string const& path) {
   double const pinhole = root_mean_square(file.read("/dots/pinhole_residual_px"));
   double const polynomial = root_mean_square(file.read("/dots/soloff_residual_px"));
   if (!(pinhole > least_px && pinhole > ratio * polynomial)) return;
-  spdlog::warn(
-      "{}: the dots deviate from the pinhole camera by {:.3g} px rms, but from the polynomial by {:.3g} px only: the "
-      "camera is not a pinhole camera (a window?), so that the components have systematic errors; calibrate without "
-      "the window, or use the uncertainties with care",
-      path, pinhole, polynomial);
+  log_warning({WarningCode::low_accuracy, path,
+               fmt::format("the dots deviate from the pinhole camera by {:.3g} px rms, but from the polynomial by "
+                           "{:.3g} px only: the camera is not a pinhole camera (a window?), so that the components "
+                           "have systematic errors; calibrate without the window, or use the uncertainties with care",
+                           pinhole, polynomial)});
 }
 
 }  // namespace

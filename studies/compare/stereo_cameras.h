@@ -13,7 +13,7 @@ namespace gladstone {
 stereo::CalibratedCamera read_calibrated_camera(std::string const& path);
 
 /// Returns the exact camera of a setup.
-/// @param name  of the case, for messages
+/// @param name  name of the case, for messages
 /// @throws DataError if the setup's camera is not a pinhole camera (see equivalent_pinhole())
 stereo::CalibratedCamera find_exact_camera(Setup const& setup, std::string const& name);
 

@@ -15,6 +15,8 @@
 #include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/json_text.h"
+#include "studies/case/result_rows.h"
+#include "studies/compare/stereo_scores.h"
 
 namespace gladstone {
 namespace {
@@ -32,7 +34,7 @@ class NodeWriter {
   }
 
   /// @param width  number of values of each node; 1: no third axis
-  /// @param value  of a determined node; NaN elsewhere
+  /// @param value  returns the value of a determined node; the others are NaN
   void write(char const* dataset, std::size_t width, char const* units, char const* description,
              std::string const& third_axis,
              std::function<double(stereo::StereoVector const&, std::size_t)> const& value) {
@@ -186,6 +188,19 @@ ComponentStatistics find_component_statistics(stereo::StereoField const& field, 
   return statistics;
 }
 
+/// Returns the statistics of u, v and w.
+std::vector<ResultGroup> component_groups(stereo::StereoField const& field) {
+  std::vector<ResultGroup> groups;
+  for (std::size_t k = 0; k < 3; ++k) {
+    ComponentStatistics const one = find_component_statistics(field, k);
+    groups.push_back({component_names[k],
+                      {{.key = "mean_mm", .label = "mean", .value = one.mean / unit::mm, .unit = "mm"},
+                       {.key = "deviation_mm", .label = "deviation", .value = one.deviation / unit::mm, .unit = "mm"},
+                       {.key = "sigma_mm", .label = "sigma", .value = one.sigma / unit::mm, .unit = "mm"}}});
+  }
+  return groups;
+}
+
 double find_median_residual(stereo::StereoField const& field) {
   std::vector<double> residuals;
   for (StereoNode const& node : field.nodes)
@@ -240,25 +255,15 @@ nlohmann::ordered_json summarize_stereo(StereoMeasurement const& measurement) {
                     {"view_angle_deg", measurement.view_angle / unit::degree},
                     {"residual_px", number_or_null(find_median_residual(field))},
                     {"residual_ratio", number_or_null(compute_residual_ratio(field))}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    ComponentStatistics const statistics = find_component_statistics(field, k);
-    json[component_names[k]] = {{"mean_mm", number_or_null(statistics.mean / unit::mm)},
-                                {"deviation_mm", number_or_null(statistics.deviation / unit::mm)},
-                                {"sigma_mm", number_or_null(statistics.sigma / unit::mm)}};
-  }
+  for (ResultGroup const& group : component_groups(field)) json[group.name] = rows_json(group.rows);
   if (measurement.alignment) json["sheet"] = summarize_alignment(measurement);
   if (measurement.given_sheet)
     json["given_sheet"] = {{"disparity_px", number_or_null(measurement.given_sheet->disparity_px.front())},
                            {"disparity_sigma_px", number_or_null(measurement.given_sheet->disparity_sigma_px)},
                            {"scatter_px", number_or_null(measurement.given_sheet->scatter_px)}};
   if (measurement.truth.empty()) return json;
-  auto const errors = compute_stereo_errors(measurement);
-  for (std::size_t k = 0; k < 3; ++k)
-    json["error"][component_names[k]] = {{"count", errors[k].count},
-                                         {"bias_px", number_or_null(errors[k].bias / measurement.pixel_size)},
-                                         {"rms_px", number_or_null(errors[k].rms / measurement.pixel_size)},
-                                         {"rms_mm", number_or_null(errors[k].rms / unit::mm)},
-                                         {"coverage", number_or_null(errors[k].coverage)}};
+  for (ResultGroup const& group : error_groups(compute_stereo_errors(measurement), measurement.pixel_size))
+    json["error"][group.name] = rows_json(group.rows);
   return json;
 }
 
@@ -268,12 +273,7 @@ std::string stereo_report(StereoMeasurement const& measurement) {
       fmt::format("Displacement at {} of {} x {} nodes, {:.4g} mm apart; {:.1f} degrees between the views\n",
                   find_component_statistics(field, 0).count, field.grid.columns, field.grid.rows,
                   field.grid.spacing / unit::mm, measurement.view_angle / unit::degree);
-  text += fmt::format("  {:<16} {:>12} {:>12} {:>12}\n", "[mm]", "mean", "deviation", "sigma");
-  for (std::size_t k = 0; k < 3; ++k) {
-    ComponentStatistics const statistics = find_component_statistics(field, k);
-    text += fmt::format("  {:<16} {:>12.5g} {:>12.3g} {:>12.3g}\n", component_names[k], statistics.mean / unit::mm,
-                        statistics.deviation / unit::mm, statistics.sigma / unit::mm);
-  }
+  text += groups_text("component", component_groups(field));
   text += fmt::format("  residual of the four equations: median {:.3g} px", find_median_residual(field));
   if (double const ratio = compute_residual_ratio(field); std::isfinite(ratio))
     text += fmt::format(", rms {:.2f} times its standard uncertainty", ratio);
@@ -281,16 +281,11 @@ std::string stereo_report(StereoMeasurement const& measurement) {
   text += '\n';
   if (measurement.alignment) text += describe_alignment(measurement);
   if (measurement.truth.empty()) return text;
-  text += fmt::format("  {:<16} {:>12} {:>12} {:>12}\n", "error [px]", "bias", "rms", "coverage");
-  auto const errors = compute_stereo_errors(measurement);
-  for (std::size_t k = 0; k < 3; ++k)
-    text += fmt::format("  {:<16} {:>12.3g} {:>12.3g} {:>10.1f} %\n", component_names[k],
-                        errors[k].bias / measurement.pixel_size, errors[k].rms / measurement.pixel_size,
-                        100.0 * errors[k].coverage);
-  return text +
-         fmt::format(
-             "  (px of {:.4g} mm on the sheet; coverage: errors within one sigma, normal distribution: 68.3 %)\n",
-             measurement.pixel_size / unit::mm);
+  text += groups_text("error", error_groups(compute_stereo_errors(measurement), measurement.pixel_size));
+  return text + fmt::format(
+                    "  (px of {:.4g} mm on the sheet; coverage: fraction of the errors within one sigma, normal "
+                    "distribution: 0.683)\n",
+                    measurement.pixel_size / unit::mm);
 }
 
 }  // namespace gladstone

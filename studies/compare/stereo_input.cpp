@@ -31,8 +31,9 @@ CaseSetup load_calibrated_setup(std::string const& calibration) {
   return load_case_setup(SetupDocument::from_text(text, calibration));
 }
 
-/// Adds an uncertainty to the settings for dewarped images if they have none and the method has none of its own: the
-/// weights of the four equations and the uncertainty of the components depend on it.
+/// Adds an uncertainty method to the settings for dewarped images if they select none and the correlation method does
+/// not estimate the uncertainty itself: the weights of the four equations and the uncertainty of the components depend
+/// on it.
 CorrelationSettings choose_dewarped_settings(CorrelationSettings settings) {
   if (!settings.estimates_uncertainty() && !correlation_method(settings.method).tracks_dots)
     settings.uncertainty = "correlation_statistics";

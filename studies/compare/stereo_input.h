@@ -19,13 +19,13 @@ struct StereoInput {
   MeasuredVectors vectors;
   stereo::CalibratedCamera camera;
   std::optional<GroundTruth> truth;
-  std::string path;         ///< of the vectors
-  std::string calibration;  ///< path; empty: the setup's exact camera
+  std::string path;         ///< path of the vectors
+  std::string calibration;  ///< path of the calibration; empty: the setup's exact camera
   double window_px = 0.0;
 };
 
 /// Locates the files of an input, adds them to the sources, and reads them.
-/// @param index  0 or 1, of StereoOptions::inputs
+/// @param index  index in StereoOptions::inputs, 0 or 1
 /// @throws DataError for files that are missing or do not fit together
 StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, SourceFiles& sources);
 

@@ -49,6 +49,20 @@ std::array<ComponentErrors, 3> compute_component_errors(std::span<Vec3d const> e
   return errors;
 }
 
+std::vector<ResultGroup> error_groups(std::array<ComponentErrors, 3> const& errors, double pixel_size) {
+  std::vector<ResultGroup> groups;
+  for (std::size_t k = 0; k < 3; ++k) {
+    ComponentErrors const& one = errors[k];
+    groups.push_back({scored_components[k],
+                      {{.key = "count", .label = "count", .value = static_cast<double>(one.count)},
+                       {.key = "bias_px", .label = "bias", .value = one.bias / pixel_size, .unit = "px"},
+                       {.key = "rms_px", .label = "rms", .value = one.rms / pixel_size, .unit = "px"},
+                       {.key = "rms_mm", .label = "rms", .value = one.rms / unit::mm, .unit = "mm"},
+                       {.key = "coverage", .label = "coverage", .value = one.coverage}}});
+  }
+  return groups;
+}
+
 StereoScores score_stereo_file(std::string const& path) {
   ThreeComponentField const field = read_three_components(path);
   Hdf5Reader const file(path);
@@ -81,12 +95,8 @@ nlohmann::ordered_json summarize_scores(StereoScores const& scores) {
   nlohmann::ordered_json json{{"file", scores.path},   {"pixel_size_mm", scores.pixel_size / unit::mm},
                               {"valid", scores.valid}, {"rejected", scores.rejected},
                               {"gross", scores.gross}, {"gross_rejected", scores.gross_rejected}};
-  for (std::size_t k = 0; k < 3; ++k)
-    json["error"][scored_components[k]] = {{"count", scores.errors[k].count},
-                                           {"bias_px", number_or_null(scores.errors[k].bias / scores.pixel_size)},
-                                           {"rms_px", number_or_null(scores.errors[k].rms / scores.pixel_size)},
-                                           {"rms_mm", number_or_null(scores.errors[k].rms / unit::mm)},
-                                           {"coverage", number_or_null(scores.errors[k].coverage)}};
+  for (ResultGroup const& group : error_groups(scores.errors, scores.pixel_size))
+    json["error"][group.name] = rows_json(group.rows);
   return json;
 }
 
@@ -95,14 +105,10 @@ std::string scores_report(StereoScores const& scores) {
       "Three components of {}: {} vectors valid, {} rejected; errors above {:g} px: {} of the valid, {} of "
       "the rejected\n",
       scores.path, scores.valid, scores.rejected, gross_error_px, scores.gross, scores.gross_rejected);
-  text += fmt::format("  {:<16} {:>12} {:>12} {:>12}\n", "error [px]", "bias", "rms", "coverage");
-  for (std::size_t k = 0; k < 3; ++k)
-    text += fmt::format("  {:<16} {:>12.3g} {:>12.3g} {:>10.1f} %\n", scored_components[k],
-                        scores.errors[k].bias / scores.pixel_size, scores.errors[k].rms / scores.pixel_size,
-                        100.0 * scores.errors[k].coverage);
+  text += groups_text("error", error_groups(scores.errors, scores.pixel_size));
   return text + fmt::format(
                     "  (px of {:.4g} mm on the sheet; truth: mean of the particles in the window, over the thickness "
-                    "of the sheet; coverage: errors within one sigma, normal distribution: 68.3 %)\n",
+                    "of the sheet; coverage: fraction of the errors within one sigma, normal distribution: 0.683)\n",
                     scores.pixel_size / unit::mm);
 }
 

@@ -9,8 +9,8 @@
 namespace gladstone {
 
 Vec2d find_plane_scale(std::array<PinholeCamera const*, 2> const& cameras, stereo::ObjectPlane const& plane) {
-  constexpr double step = 1e-4;  // [m]
-  Vec2d scale{};                 // half of each camera's
+  constexpr double step = 1e-4;  // step of the finite differences [m]
+  Vec2d scale{};                 // mean of both cameras: the sum of half the scale of each
   for (PinholeCamera const* camera : cameras) {
     Vec2d const middle = camera->project(plane.point({}));
     Vec2d const along_x = camera->project(plane.point({step, 0})) - middle;

@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-/// Returns the indices retained out of `count`, centred.
+/// Returns the indices of every n-th of `count` rows or columns, centred.
 std::vector<int> every_nth_of(int count, int n) {
   std::vector<int> stay;
   for (int i = (count - 1) % n / 2; i < count; i += n) stay.push_back(i);

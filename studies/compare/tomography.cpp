@@ -1,7 +1,6 @@
 #include "studies/compare/tomography.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "render/base/units.h"
 #include "render/files/stop_point.h"
 #include "render/medium/field_volume.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/tomography_view.h"
 
 namespace gladstone {
@@ -100,7 +100,7 @@ std::array<double, 2> find_common_range(std::vector<TomographyView> const& views
   double low = -HUGE_VAL, high = HUGE_VAL;
   for (TomographyView const& view : views) {
     double const along = view.view_direction[axis], across2 = 1.0 - along * along;
-    if (across2 < 0.75) continue;  // more than 30 degrees oblique
+    if (across2 < 0.75) continue;  // the view is more than 30 degrees oblique to the axis
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (Vec3d const& point : view.middle_points) {
       least = std::min(least, point[axis] / across2);
@@ -178,45 +178,50 @@ std::vector<double> sample_truth(MediumSetup const& setup, double angle, Regular
 }
 
 void add_tomography_warnings(Tomography& result, std::vector<TomographyView> const& views) {
-  constexpr double largest_residual = 0.5;  // three quarters of the squared line integrals are explained
+  // residuals of 0.5 leave a quarter of the squared line integrals unexplained
+  constexpr double largest_residual = 0.5;
   for (TomographyView const& view : views) {
     std::string const& name = view.projected.name;
     if (view.loaded.setup.has_refracting_elements())
-      result.warnings.push_back(name +
-                                ": windows and other optical elements are neglected: lines of sight are straight");
+      result.warnings.push_back({WarningCode::approximated, name,
+                                 "windows and other optical elements are neglected: lines of sight are straight"});
     if (view.unreferenced > 0)
-      result.warnings.push_back(
-          fmt::format("{}: {} vectors are not used, since masks separate them from the reference region; add a "
-                      "--reference on their side if the flow does not reach it",
-                      name, view.unreferenced));
+      result.warnings.push_back({WarningCode::excluded, name,
+                                 fmt::format("{} vectors are not used, since masks separate them from the reference "
+                                             "region; add a --reference on their side if the flow does not reach it",
+                                             view.unreferenced)});
   }
   for (auto const& [view, ratio] : tomography::find_contradicting_views(result.view_residual))
-    result.warnings.push_back(fmt::format(
-        "{}: contradicts the other views: the residual of its line integrals is {:.0f} %, {:.1f} times that of the "
-        "others; check the order of the views, --angles, the camera and geometry of its setup (calibration), and the "
-        "sign, position and reference of its vectors",
-        result.views[view], 100.0 * result.view_residual[view], ratio));
+    result.warnings.push_back(
+        {WarningCode::unreliable, result.views[view],
+         fmt::format("contradicts the other views: the residual of its line integrals is {:.0f} %, {:.1f} times that "
+                     "of the others; check the order of the views, --angles, the camera and geometry of its setup "
+                     "(calibration), and the sign, position and reference of its vectors",
+                     100.0 * result.view_residual[view], ratio)});
   if (result.residual.back() > largest_residual)
     result.warnings.push_back(
-        fmt::format("the volume does not explain the line integrals (residual of {:.0f} %); check --angles, --support, "
-                    "--bounds, --reference and the limits of the density",
-                    100.0 * result.residual.back()));
+        {WarningCode::unreliable, "",
+         fmt::format("the volume does not explain the line integrals (residual of {:.0f} %); check --angles, "
+                     "--support, --bounds, --reference and the limits of the density",
+                     100.0 * result.residual.back())});
   if (result.outside > 0.01)
-    result.warnings.push_back(fmt::format(
-        "the views show density outside of the reconstructed volume: {:.0f} % of the sum of the squared line "
-        "integrals belong to lines of sight that miss it; enlarge the volume with --bounds, or choose "
-        "--reference where the density is that of the ambient",
-        100.0 * result.outside));
+    result.warnings.push_back(
+        {WarningCode::unsuitable, "",
+         fmt::format("the views show density outside of the reconstructed volume: {:.0f} % of the sum of the squared "
+                     "line integrals belong to lines of sight that miss it; enlarge the volume with --bounds, or "
+                     "choose --reference where the density is that of the ambient",
+                     100.0 * result.outside)});
   auto const unseen = std::count_if(result.seen.begin(), result.seen.end(), [](std::int64_t views_of_node) {
     return views_of_node < static_cast<std::int64_t>(tomography::least_views);
   });
   double const fraction = static_cast<double>(unseen) / static_cast<double>(result.seen.size());
   if (fraction > 0.01)
     result.warnings.push_back(
-        fmt::format("{:.0f} % of the volume are seen by fewer than {} views, where the density is "
-                    "not determined; reduce the volume with --bounds, or, if its nodes are closer than the "
-                    "vectors, increase --spacing",
-                    100.0 * fraction, tomography::least_views));
+        {WarningCode::unsuitable, "",
+         fmt::format(
+             "{:.0f} % of the volume are seen by fewer than {} views, where the density is not determined; reduce the "
+             "volume with --bounds, or, if its nodes are closer than the vectors, increase --spacing",
+             100.0 * fraction, tomography::least_views)});
 }
 
 }  // namespace
@@ -276,7 +281,7 @@ Tomography reconstruct_views(TomographyOptions const& options, tomography::SartV
   result.seed = views.front().loaded.setup.render.seed;
   result.sources.on_change("run gladstone tomography again");
   add_tomography_warnings(result, views);
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  log_warnings(result.warnings);
   return result;
 }
 

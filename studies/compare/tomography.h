@@ -8,6 +8,7 @@
 
 #include "analysis/tomography/volume_reconstruction.h"
 #include "render/base/pose.h"
+#include "render/base/warning.h"
 #include "render/files/source_files.h"
 #include "studies/compare/reconstruct.h"
 
@@ -25,15 +26,17 @@ struct TomographyOptions {
   std::vector<std::string> views;          ///< case folder of each view, or its setup together with `vectors`
   std::vector<std::string> vectors;        ///< vectors of each view; empty: CASE/vectors.h5
   bool ray_truth = false;                  ///< use the true displacement of the dots of rendered cases
-  std::optional<std::string> conventions;  ///< of the vectors, as given by the user; empty: those of the file's format
+  std::optional<std::string> conventions;  ///< conventions of the vectors given by the user; empty: those of the file's
+                                           ///< format
   std::vector<double> angles;      ///< angle of the volume about Y in each view [rad]; empty: i / views of `arc`
   double arc = 3.141592653589793;  ///< range of the default angles [rad]
   std::vector<ReferenceRegion> reference;  ///< region of each view whose lines of sight meet the reference density only
   std::optional<double> reference_density;     ///< [kg/m^3]; empty: ambient density of the setups
   std::optional<std::array<Vec3d, 2>> bounds;  ///< lowest and highest corner of the volume [m]; empty: common view
   std::optional<double> spacing;               ///< distance between nodes [m]; empty: that of the vectors
-  std::optional<VolumeSupport> support;        ///< empty: the whole volume
-  double least_density = 0.0;                  ///< lower bound of the density [kg/m^3]
+  /// part outside of which the density is known; empty: the whole volume is reconstructed
+  std::optional<VolumeSupport> support;
+  double least_density = 0.0;                                        ///< lower bound of the density [kg/m^3]
   double largest_density = std::numeric_limits<double>::infinity();  ///< upper bound [kg/m^3]
   tomography::SartSettings sart;  ///< bounds and support are set from the members above
 };
@@ -41,11 +44,11 @@ struct TomographyOptions {
 /// Density of a volume, reconstructed from several views.
 struct Tomography {
   RegularGrid grid;                   ///< nodes in the frame of the volume
-  std::vector<double> density;        ///< [kg/m^3, grid.size()], x fastest
+  std::vector<double> density;        ///< density at the nodes [kg/m^3, grid.size()], x fastest
   std::vector<std::int64_t> seen;     ///< number of views that see the node [grid.size()]
   std::vector<double> truth;          ///< true density of rendered cases [kg/m^3, grid.size()]; empty: unknown
-  std::vector<double> residual;       ///< see tomography::VolumeReconstruction [1]
-  std::vector<double> view_residual;  ///< see tomography::VolumeReconstruction [1, views]
+  std::vector<double> residual;       ///< relative residual of each sweep, see tomography::VolumeReconstruction [1]
+  std::vector<double> view_residual;  ///< residual of each view, see tomography::VolumeReconstruction [1, views]
   double reference_density = 0.0;     ///< [kg/m^3]
   double tv_weight = 0.0;             ///< strength of the total variation in the last sweep, see SartSettings [1]
   std::string device = "cpu";         ///< device of the reconstruction
@@ -54,9 +57,9 @@ struct Tomography {
   std::vector<double> angles;         ///< angle of the volume in each view [rad]
   std::vector<std::size_t> vectors;   ///< number of vectors of each view with a line integral
   tomography::SartSettings settings;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string setup;         ///< resolved setup of the first view
-  std::uint64_t seed = 0;    ///< of the rendering
+  std::uint64_t seed = 0;    ///< random seed of the rendering
   SourceFiles sources = {};  ///< setups and vectors
 };
 

@@ -86,7 +86,7 @@ std::vector<std::string> write_tomography_setups(TomographyPlan const& plan, std
   MediumSetup const& medium = loaded.setup.medium;
   if (medium.field.kind == FieldKind::none || medium.field.extrude)
     throw SetupError(
-        {SetupProblem{"medium.field", "is no volume; tomography needs a field with all three dimensions"}});
+        {SetupProblem{"medium.field", "is not a volume; tomography needs a field with all three dimensions"}});
   BuiltMedium const built = build_checked_medium(medium);
   RegularGrid const grid = enclose_field(medium, built);
   require_memory(plan.setup, fmt::format("a field of {} x {} x {} nodes", grid.nodes[0], grid.nodes[1], grid.nodes[2]),

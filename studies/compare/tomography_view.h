@@ -10,16 +10,16 @@ namespace gladstone {
 struct TomographyView {
   CaseSetup loaded;
   tomography::ProjectedView projected = {};
-  Vec3d view_direction{};                 ///< from the volume towards the camera
+  Vec3d view_direction{};                 ///< direction from the volume towards the camera
   std::vector<Vec3d> middle_points = {};  ///< points of the lines of sight that are closest to the volume's origin [m]
-  double spacing = 0.0;                   ///< distance between the lines of adjacent vectors there [m]
+  double spacing = 0.0;                   ///< distance between the lines of adjacent vectors at these points [m]
   std::size_t unreferenced = 0;           ///< vectors in regions without reference, which have no line integral
-  bool rendered = false;                  ///< the field of the setup is that of the measurement
+  bool rendered = false;                  ///< true: the view is a rendered case, whose setup contains the true field
 };
 
 /// Reads a view and converts its displacement to line integrals.
-/// @param index    of the view in options.views
-/// @param angle    of the volume about Y [rad]
+/// @param index    index of the view in options.views
+/// @param angle    angle of the volume about Y [rad]
 /// @param sources  receives the files
 /// @throws SetupError, DataError
 TomographyView read_tomography_view(TomographyOptions const& options, std::size_t index, double angle,

@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_light = 0.1;  // of a dot, relative to the median
+constexpr double least_light = 0.1;  // minimum light of a dot, relative to the median
 
 double median_of_positive(std::span<double const> values) {
   std::vector<double> positive;

@@ -10,8 +10,8 @@
 
 namespace gladstone {
 
-/// Adds the places of the dots of a BOS target in the reference image to settings of dot tracking, which then searches
-/// for no others; changes no other settings.
+/// Adds the positions of the dots of a BOS target in the reference image to settings of dot tracking, which then
+/// searches for no others; changes no other settings.
 CorrelationSettings with_known_dots(CorrelationSettings settings, Setup const& setup,
                                     std::vector<Vec2d> const& reference_px);
 

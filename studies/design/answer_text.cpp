@@ -20,7 +20,7 @@ constexpr std::size_t most_alternatives = 5;
 /// A predicted quantity with its key.
 struct Predicted {
   char const* key;
-  double value;  ///< in the key's unit
+  double value;  ///< value in the unit of the key
 };
 
 std::vector<Predicted> predicted(DesignPoint<double> const& b) {
@@ -50,9 +50,9 @@ std::vector<std::pair<std::string, double>> recommended(DesignQuestion const& qu
   return keys;
 }
 
-double required_value(AnsweredQuestion const& answered, Bound bound) {
-  for (Limit const& limit : required_limits(answered.question.requirements)) {
-    if (limit.bound == bound) return limit.value / bound_key(bound).unit;
+double required_value(AnsweredQuestion const& answered, Bound const* bound) {
+  for (Limit const& limit : answered.question.requirements.limits) {
+    if (limit.bound == bound) return limit.value / bound->unit;
   }
   return NAN;
 }
@@ -83,7 +83,7 @@ std::string feasible_text(AnsweredQuestion const& answered) {
   text += fmt::format("cost of each requirement: change of {} if it is 1 % stricter\n", objective_word(answered));
   for (RequirementCost const& cost : answered.answer.costs) {
     text += fmt::format(
-        "  {:<40}{}\n", bound_name(cost.bound),
+        "  {:<40}{}\n", cost.bound->name,
         std::isfinite(cost.change) ? fmt::format("{:+.2f} %", 100 * cost.change) : std::string("infeasible"));
   }
   return text;
@@ -91,14 +91,13 @@ std::string feasible_text(AnsweredQuestion const& answered) {
 
 std::string infeasible_text(AnsweredQuestion const& answered) {
   std::string text = "no feasible design: these requirements conflict\n";
-  for (Bound const bound : answered.answer.conflicts) {
-    text += fmt::format("  {} = {:.6g}\n", bound_name(bound), required_value(answered, bound));
+  for (Bound const* const bound : answered.answer.conflicts) {
+    text += fmt::format("  {} = {:.6g}\n", bound->name, required_value(answered, bound));
   }
   auto const add = [&](std::vector<Relaxation> const& relaxations) {
     for (Relaxation const& relaxation : relaxations) {
-      text +=
-          fmt::format("  {} = {:.6g} instead of {:.6g}\n", bound_name(relaxation.bound),
-                      relaxation.value / bound_key(relaxation.bound).unit, required_value(answered, relaxation.bound));
+      text += fmt::format("  {} = {:.6g} instead of {:.6g}\n", relaxation.bound->name,
+                          relaxation.value / relaxation.bound->unit, required_value(answered, relaxation.bound));
     }
   };
   if (auto const& nearest = answered.answer.without_requirements) {
@@ -106,7 +105,7 @@ std::string infeasible_text(AnsweredQuestion const& answered) {
         "  the limits of the free keys and the constraints of every set-up, without any requirement; the closest "
         "set-up\n" +
         outcome_text(answered, *nearest);
-    if (nearest->solution.worst == Bound::full_well) {
+    if (nearest->solution.worst == &below_full_well) {
       text += fmt::format("    {:.3g} times the light (radiance or exposure) would be sufficient\n",
                           std::exp(-nearest->solution.violation));
     }
@@ -133,12 +132,12 @@ Json feasible_json(AnsweredQuestion const& answered) {
   json["costs"] = Json::array();
   for (RequirementCost const& cost : answer.costs) {
     json["costs"].push_back(
-        {{"key", bound_name(cost.bound)}, {"change", std::isfinite(cost.change) ? Json(cost.change) : Json(nullptr)}});
+        {{"key", cost.bound->name}, {"change", std::isfinite(cost.change) ? Json(cost.change) : Json(nullptr)}});
   }
   json["front"] = Json::array();
   for (FrontPoint const& point : answer.front) {
-    json["front"].push_back({{"key", bound_name(answer.front_bound)},
-                             {"limit", point.limit / bound_key(answer.front_bound).unit},
+    json["front"].push_back({{"key", answer.front_bound->name},
+                             {"limit", point.limit / answer.front_bound->unit},
                              {"objective", written_objective(answered, point.objective)}});
   }
   return json;
@@ -155,7 +154,7 @@ std::string answer_text(AnsweredQuestion const& answered) {
   }
   std::map<std::string, int> skipped_by;
   for (BranchOutcome const& outcome : answered.answer.outcomes)
-    if (outcome.skipped) ++skipped_by[bound_name(outcome.solution.worst)];
+    if (outcome.skipped) ++skipped_by[outcome.solution.worst->name];
   for (auto const& [bound, count] : skipped_by) text += fmt::format("  {} skipped: {} excludes them\n", count, bound);
   for (SkippedVariant const& variant : answered.skipped) {
     text += fmt::format("  {}: skipped, incompatible with the setup: {}\n", variant.name(), variant.reason);
@@ -170,19 +169,18 @@ Json answer_json(AnsweredQuestion const& answered) {
   json["objective"] = objective_keys[static_cast<std::size_t>(answered.question.requirements.objective)];
   if (answered.verification) json.update(verification_json(*answered.verification));
   json["conflicts"] = Json::array();
-  for (Bound const bound : answer.conflicts) json["conflicts"].push_back(bound_name(bound));
+  for (Bound const* const bound : answer.conflicts) json["conflicts"].push_back(bound->name);
   for (auto const& [key, relaxations] :
        {std::pair{"relaxations", &answer.relaxations}, {"relaxations_together", &answer.together}}) {
     json[key] = Json::array();
     for (Relaxation const& relaxation : *relaxations) {
-      json[key].push_back(
-          {{"key", bound_name(relaxation.bound)}, {"value", relaxation.value / bound_key(relaxation.bound).unit}});
+      json[key].push_back({{"key", relaxation.bound->name}, {"value", relaxation.value / relaxation.bound->unit}});
     }
   }
   if (auto const& nearest = answer.without_requirements) {
     bool const known = std::isfinite(nearest->solution.violation);
     json["without_requirements"] = {{"name", branch_name(nearest->branch, answered.variants, answered.question)},
-                                    {"bound", bound_name(nearest->solution.worst)},
+                                    {"bound", nearest->solution.worst->name},
                                     {"excess", known ? Json(std::expm1(nearest->solution.violation)) : Json(nullptr)}};
   }
   json["choices"] = Json::array();
@@ -193,7 +191,7 @@ Json answer_json(AnsweredQuestion const& answered) {
          {"feasible", feasible},
          {"skipped", outcome.skipped},
          {"objective", feasible ? Json(written_objective(answered, outcome.solution.objective)) : Json(nullptr)},
-         {"worst", bound_name(outcome.solution.worst)}});
+         {"worst", outcome.solution.worst->name}});
   }
   json["skipped"] = Json::array();
   for (SkippedVariant const& variant : answered.skipped) {

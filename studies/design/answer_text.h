@@ -14,7 +14,8 @@ struct AnsweredQuestion {
   DesignQuestion question;
   std::vector<DesignVariant> variants;
   Recommendation answer;
-  std::optional<Verification> verification;  ///< empty if no simulation was requested or no design is feasible
+  /// result of the simulations; empty if none was requested or no design is feasible
+  std::optional<Verification> verification;
   std::vector<SkippedVariant> skipped = {};  ///< cameras and lenses that are incompatible with the setup
 
   /// Returns the recommended design: the best one that meets the requirements in simulation, or the best by formula if

@@ -2,105 +2,93 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "studies/design/design_point.h"
 #include "studies/design/question.h"
 
+namespace ceres {
+template <typename T, int N>
+struct Jet;
+}  // namespace ceres
+
 namespace gladstone {
 
-/// Constraints on a set-up: first the user's requirements, then those for which the closed forms are valid.
-enum class Bound {
-  gradient_min,
-  resolution,
-  displacement_max,
-  uncertainty_max,
-  view_width,
-  view_height,
-  z_total,
-  // of every set-up
-  focus,       ///< an image of the dots exists
-  dots_clear,  ///< the dots are outside the medium
-  lens_clear,  ///< the lens is outside the medium
-  dot_least,   ///< the dot's geometric image is not below the range in which the random error was measured
-  dot_most,    ///< the whole dot image is not above that range
-  coverage,    ///< dots without overlap fit on the target
-  noise_most,  ///< the noise is not above the range in which the random error was measured
-  full_well,   ///< the peak is below full scale
+struct Estimate;
+struct SimulatedDesign;
+
+/// Number with its derivatives with respect to the design variables.
+using DesignJet = ceres::Jet<double, static_cast<int>(choice_count)>;
+
+/// Excess of a set-up over a limit [SI], as a function template with and without derivatives.
+struct ExcessFunction {
+  double (*value)(double limit, DesignPoint<double> const& bench);
+  DesignJet (*derivatives)(double limit, DesignPoint<DesignJet> const& bench);
+
+  template <class Function>
+  constexpr ExcessFunction(Function function) : value(function), derivatives(function) {}
 };
 
-/// Returns true for lower limits, for which a larger value is stricter.
-inline bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
+/// A constraint on a set-up: a requirement of the user, or one of those for which the closed forms are valid. A new one
+/// requires one more row in bounds.cpp.
+struct Bound {
+  /// Extreme set-up of a branch that misses the bound only if all others do.
+  enum class Extreme { none, near, far };
 
-/// A constraint with its limit, in SI.
-struct Limit {
-  Bound bound;
-  double value;
+  char const* name;  ///< path of a requirement's key, whose suffix is the unit; a description of the others
+  double unit = 1;   ///< value of that unit in SI
+  ExcessFunction excess;
+  bool from_below = false;  ///< lower limit: a larger value is stricter
+  Extreme extreme = Extreme::none;
+  /// Prediction and simulation of the limited quantity, in SI; null: a simulation adds no information.
+  std::pair<double, Estimate> (*simulated)(SimulatedDesign const&, DesignPoint<double> const&) = nullptr;
+  /// Describes why a set-up does not meet the bound, given the excess; null: by how much it is too large or small.
+  std::string (*violation)(double excess) = nullptr;
+  /// Limit of every set-up; null: the user gives the limit.
+  double (*given)(FixedDesignParameters const&) = nullptr;
+
+  /// Return the parts of a requirement's path: table, key, and index in the array of the key, -1 for a number.
+  std::string table() const;
+  std::string key() const;
+  int component() const;
 };
 
-/// Returns the name of a constraint for the user: the key of a requirement, a description for the others.
-std::string bound_name(Bound bound);
-/// Key of a requirement in the setup, whose suffix is the unit, and the value of that unit in SI.
-struct BoundKey {
-  char const* path;
-  double unit;
-};
-BoundKey bound_key(Bound bound);
+/// Returns the possible requirements of a user, in the order of the output.
+std::span<Bound const> requirements();
+/// Returns the requirement of that name. @pre it exists
+Bound const& requirement(std::string_view name);
 
-/// Returns the limits required by the user.
-std::vector<Limit> required_limits(Requirements const& requirements);
+extern Bound const in_focus;         ///< an image of the dots exists
+extern Bound const below_full_well;  ///< the peaks are below full scale
+
+/// Describes why a set-up exceeds a limit.
+std::string describe_violation(Bound const& bound, double excess);
+
 /// Returns the limits that every set-up must meet.
 std::vector<Limit> feasibility_limits(FixedDesignParameters const& given);
 
 inline constexpr double closest_focus = 1.02;  ///< minimum distance of the dots from the lens, in focal lengths
-/// maximum fraction of the target covered by dots; random discs without overlap reach 0.5
-inline constexpr double most_coverage = 0.45;
 
 /// Returns the excess of a set-up over a limit as the logarithm of a ratio; for the resolution, the deficit of transfer
 /// at the required wavelength. A limit is met if the excess is 0 or less. If no image of the dots exists, returns the
-/// excess over the limit `focus` instead.
-/// @param bench  set-up; may contain derivatives
+/// excess over the limit `in_focus` instead.
+/// @param bench  set-up; T is double or DesignJet
 template <class T>
 T excess(Limit const& limit, DesignPoint<T> const& bench) {
   using std::log;
   T const beyond_focus = bench.z_b() / bench.focal_length;
-  if (beyond_focus < closest_focus || limit.bound == Bound::focus) return log(closest_focus / beyond_focus);
-  FixedDesignParameters const& given = *bench.given;
-  switch (limit.bound) {
-    case Bound::gradient_min:
-      return log(bench.smallest_gradient() / limit.value);
-    case Bound::resolution:
-      return transfer_at_resolution - bench.transfer(T(limit.value));
-    case Bound::displacement_max:
-      if (given.largest_gradient == 0) return T(-1);  // no displacement
-      return log(bench.largest_displacement_px() / limit.value);
-    case Bound::uncertainty_max:
-      return log(bench.random_error() / limit.value);
-    case Bound::view_width:
-      return log(limit.value / (double(given.camera.columns) * bench.pixel_at_medium()));
-    case Bound::view_height:
-      return log(limit.value / (double(given.camera.rows) * bench.pixel_at_medium()));
-    case Bound::z_total:
-      return log(bench.z_b() / limit.value);
-    case Bound::focus:
-      break;
-    case Bound::dots_clear:
-      return log(limit.value / bench.z_d);
-    case Bound::lens_clear:
-      return log(limit.value / bench.z_a);
-    case Bound::dot_least:
-      return log(limit.value / bench.geometric_dot_px());
-    case Bound::dot_most:
-      return log(bench.dot_image_px() / limit.value);
-    case Bound::coverage:
-      return log(bench.coverage() / limit.value);
-    case Bound::noise_most:
-      return log(bench.noise() / limit.value);
-    case Bound::full_well:
-      return log(bench.peak_electrons() / limit.value);
+  if (beyond_focus < closest_focus) return log(closest_focus / beyond_focus);
+  if constexpr (std::is_same_v<T, double>) {
+    return limit.bound->excess.value(limit.value, bench);
+  } else {
+    return limit.bound->excess.derivatives(limit.value, bench);
   }
-  return T(0);
 }
 
 /// Returns the quantity that an objective minimizes, in SI.

@@ -1,12 +1,18 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/setup/setup_table.h"
 #include "studies/case/backend.h"
+#include "studies/design/answer_text.h"
+#include "studies/design/measurement_inputs.h"
+#include "studies/design/sheet.h"
 #include "studies/design/verification.h"
 
 namespace gladstone {
@@ -15,28 +21,36 @@ namespace gladstone {
 struct DesignRequest {
   std::string setup;
   std::vector<std::string> overrides;
-  std::string figures;  ///< folder of the figures; empty: no figures
-  std::string figure_format = "png";
   std::string apply;                     ///< file for the recommended setup; empty: not written
-  VerificationPlan verification;         ///< zero benches: no simulation
+  VerificationPlan verification;         ///< extent of the simulation; benches = 0: none
   std::function<Backend()> open_device;  ///< opens the device of the simulation
 };
 
 /// Result of `gladstone design`.
 struct DesignReport {
-  nlohmann::ordered_json json;
+  DesignSheet sheet;                                  ///< sheet of the setup as written
+  std::optional<MeasurementUncertainty> uncertainty;  ///< empty if no input has an uncertainty
+  std::optional<AnsweredQuestion> answer;             ///< empty without [requirements]
+  std::optional<DesignSheet> recommended_sheet;       ///< empty if no design is feasible by formula
+  Setup setup;                                        ///< as written
+  std::unique_ptr<FixedDesignParameters> given;       ///< parameters of a BOS setup as written
+  /// BOS: the recommended set-up, or that of the setup as written if none is recommended
+  std::optional<DesignPoint<double>> best;
   std::string text;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   bool feasible = true;  ///< by formula and, if simulated, in simulation; also true without requirements
 };
 
 /// Computes the design sheet of a setup and, if it has [requirements], the recommended setup or the reasons why none
-/// exists. Writes the figures and the recommended setup.
+/// exists. Writes the recommended setup.
 /// @throws SetupError with all problems of the setup and the question
 /// @throws DataError if the design has no light cone, or for --apply without [requirements]
 /// @throws OutputError if a file cannot be written
 DesignReport design(DesignRequest const& request);
-/// Does the same for a setup in memory; request.setup is its name in messages and request.overrides are ignored.
+/// Like design() above, for a setup in memory; request.setup is its name in messages and request.overrides are ignored.
 DesignReport design(SetupDocument document, DesignRequest const& request);
+
+/// Returns the design sheets, the uncertainty and the answer as JSON.
+nlohmann::ordered_json design_json(DesignReport const& report);
 
 }  // namespace gladstone

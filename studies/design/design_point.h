@@ -16,7 +16,7 @@ namespace gladstone {
 /// Given properties of a BOS set-up, which do not change with distances or lens. In SI.
 struct FixedDesignParameters {
   CameraSetup camera;               ///< pixels, pitch, noise, exposure
-  std::optional<PaperLight> light;  ///< replaces the camera's exposure
+  std::optional<PaperLight> light;  ///< illumination of the target; replaces the camera's exposure
   double wavelength = 532e-9;       ///< [m]
   double gladstone_dale = 2.26e-4;  ///< K [m^3/kg]
   double ambient_index = 1.00027685;
@@ -148,8 +148,8 @@ struct DesignPoint {
 /// Returns the wavelength of density with a transfer of 1 / sqrt(2); the transfer of shorter waves is smaller [m].
 double resolved_wavelength(DesignPoint<double> const& bench);
 
-/// Computes the same with the derivatives of a Jet, by the implicit function theorem: transfer(wavelength, choices) is
-/// constant.
+/// Computes the resolved wavelength with the derivatives of a Jet, by the implicit function theorem:
+/// transfer(wavelength, design variables) is constant.
 template <class T>
 T resolved_wavelength(DesignPoint<T> const& bench, DesignPoint<double> const& value) {
   double const wavelength = resolved_wavelength(value), step = 1e-5 * wavelength;

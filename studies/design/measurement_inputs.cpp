@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/medium/gladstone_dale.h"
+#include "render/render.h"
 #include "studies/case/log_silencer.h"
 
 namespace gladstone {
@@ -55,8 +56,7 @@ double traced_displacement(CaseSetup const& loaded, UncertainInput const& input,
   changed.set(input.path, setup_number(value));
   CaseSetup moved = load_case_setup(std::move(changed));
   PreparedCase prepared = prepare_case(moved);
-  GroundTruth const truth =
-      renderer.render(prepared.scene, prepared.scene.dots, RenderImages::no, RenderTheory::no).truth;
+  GroundTruth const truth = render(prepared.scene, prepared.plan, renderer, RenderImages::no, RenderTheory::no).truth;
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {

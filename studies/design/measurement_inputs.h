@@ -12,7 +12,7 @@ namespace gladstone {
 
 /// Uncertainty of a density gradient measured with a setup, by contributions of the inputs.
 struct MeasurementUncertainty {
-  std::vector<MeasurementInput> inputs;  ///< the first one is the displacement
+  std::vector<MeasurementInput> inputs;  ///< uncertain inputs; the first one is the displacement
   std::vector<PropagatedResult> results;
   double random_px = 0;  ///< random error of the displacement [px]
   /// amplitude transfer of a wave twice as long as the resolved one [1]; for the remaining loss see
@@ -22,9 +22,9 @@ struct MeasurementUncertainty {
 };
 
 /// Computes d ln(displacement per gradient) / d(key) of a setup, in the key's unit, by ray tracing. Uses central
-/// differences with a step of a thousandth of the value (of sigma if the value is 0), or one-sided ones if the value is
-/// 0 and its sign is restricted. Chief rays, unclipped by any stop, cross a uniform gradient, with the same random
-/// numbers on both sides. Returns nullopt if the setup cannot be traced in this way.
+/// differences with a step of a thousandth of the value (of sigma if the value is 0), or one-sided differences if the
+/// value is 0 and its sign is restricted. Chief rays, unclipped by any stop, cross a uniform gradient, with the same
+/// random numbers on both sides. Returns nullopt if the setup cannot be traced in this way.
 std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer);
 
 /// Returns the inputs of the measurement formula for a displacement [px] measured with a setup.

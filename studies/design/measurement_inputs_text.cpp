@@ -14,8 +14,8 @@ constexpr double traced_tolerance = 0.02;
 
 std::string degrees_text(double degrees) { return std::isfinite(degrees) ? fmt::format("{:.3g}", degrees) : "inf"; }
 
-/// Returns true if formula and ray tracing agree on the derivative of the gradient, or without a gradient or a
-/// traced derivative.
+/// Returns true if formula and ray tracing agree on the derivative of the gradient. Also true if the derivative was not
+/// traced or the gradient is 0.
 bool same(MeasurementInput const& input, PropagatedResult const& gradient, Contribution const& contribution) {
   if (!input.traced || gradient.value == 0) return true;
   double const scale = input.value != 0 ? std::abs(input.value) : input.sigma;

@@ -111,8 +111,8 @@ PredictedBlur predicted_blur(Setup const& setup, DesignPoint<double> const& benc
   Setup wider = setup;
   wider.camera.columns += 2 * margin;
   wider.camera.rows += 2 * margin;
-  Scene const scene = with_chosen_step(build_scene(wider));
-  Lattice const sharp(map_field(scene, spacing_px).eq9_px);
+  Scene const scene = build_scene(wider);
+  Lattice const sharp(map_field(scene, plan_step(scene).step, spacing_px).eq9_px);
   Lattice const cone = blurred(sharp, offsets);
   PredictedBlur blur;
   blur.cone_px.resize(places_px.size());

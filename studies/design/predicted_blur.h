@@ -9,8 +9,9 @@ namespace gladstone {
 
 /// Closed-form prediction of the blur of a setup's field: displacement minus small-angle theory (Eq. 9) at points.
 struct PredictedBlur {
-  std::vector<Vec2d> cone_px;   ///< by light cone (F10) and dot [px]
-  std::vector<Vec2d> whole_px;  ///< additionally by the interrogation window (F11), with its squared weights [px]
+  std::vector<Vec2d> cone_px;   ///< displacement averaged over light cone (F10) and dot [px]
+  std::vector<Vec2d> whole_px;  ///< displacement averaged over the interrogation window (F11), too, with its squared
+                                ///< weights [px]
 };
 
 /// Averages Eq. 9 on a lattice over the regions covered by cone, dot and window; equivalent to multiplying their

@@ -55,7 +55,8 @@ double derivative_of(MeasurementInput const& input, GradientMeasurement<double> 
   return result.v[static_cast<Eigen::Index>(*input.enters)] * slope_of(input, at[*input.enters]);
 }
 
-/// Computes the results of one sample; inputs outside the formula scale it by the exponential of their traced effect.
+/// Computes the gradient and the density step of one sample. Inputs that the formula does not contain multiply the
+/// gradient by the exponential of minus their traced logarithmic derivative times their deviation.
 std::array<double, 2> sample(GradientMeasurement<double> measurement, std::vector<MeasurementInput> const& inputs,
                              Eigen::VectorXd const& drawn) {
   double factor = 1;

@@ -89,10 +89,11 @@ struct PropagatedResult {
   /// effective degrees of freedom (Welch-Satterthwaite formula); infinite if every input has infinitely many
   double degrees_of_freedom = 0;
   double coverage_factor = 2;               ///< coverage factor for 95.45 %
-  std::vector<Contribution> contributions;  ///< one per input, in their order
-  /// empty if an input has one degree of freedom, since its mean does not exist
+  std::vector<Contribution> contributions;  ///< contributions of the inputs, in their order
+  /// mean of the samples; empty if an input has one degree of freedom, since its mean does not exist
   std::optional<double> sampled_mean;
-  /// empty if an input has at most two degrees of freedom, since its variance does not exist
+  /// standard deviation of the samples; empty if an input has at most two degrees of freedom, since its variance does
+  /// not exist
   std::optional<double> sampled_standard;
   double sampled_low = 0, sampled_high = 0;  ///< interval of 95.45 % of the samples, with equal tails
   /// True if the limits of the sampled interval agree with value -+ k u within half of the first digit of `standard`

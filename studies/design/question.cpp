@@ -35,24 +35,27 @@ std::vector<std::string> texts(SetupDocument& document, std::string const& table
   return found;
 }
 
-std::optional<double> scaled(std::optional<double> value, double unit) {
-  return value ? std::optional(*value * unit) : std::nullopt;
+/// Returns the numbers of a requirement's key; empty if it is not given or invalid.
+std::vector<double> read_required(SetupTable table, Bound const& bound) {
+  if (bound.component() < 0) {
+    auto const value = table.optional_number(bound.key(), Range::positive());
+    return value ? std::vector{*value} : std::vector<double>{};
+  }
+  return table.has(bound.key()) ? table.numbers(bound.key(), {100, 100}, 2, Range::positive()) : std::vector<double>{};
 }
 
-Requirements read_requirements(SetupTable table, SetupTable limits) {
+Requirements read_requirements(SetupTable root) {
+  SetupTable table = root.table("requirements");
   Requirements r;
   std::string const word = table.required_word("objective", {objective_words.begin(), objective_words.end()});
   auto const found = std::find(objective_words.begin(), objective_words.end(), word);
   if (found != objective_words.end()) r.objective = static_cast<Objective>(found - objective_words.begin());
-  r.gradient_min = table.optional_number("gradient_min_kg_m4", Range::positive());
-  r.resolution = scaled(table.optional_number("resolution_mm", Range::positive()), mm);
-  r.displacement_max = table.optional_number("displacement_max_px", Range::positive());
-  r.uncertainty_max = table.optional_number("uncertainty_max_px", Range::positive());
-  if (table.has("field_of_view_mm")) {
-    auto const size = table.numbers("field_of_view_mm", {100, 100}, 2, Range::positive());
-    if (size.size() == 2) r.field_of_view = Vec2d{size[0], size[1]} * mm;
+  std::vector<double> numbers;  // of the last key
+  for (Bound const& bound : requirements()) {
+    if (bound.component() <= 0) numbers = read_required(root.table(bound.table()), bound);
+    auto const index = static_cast<std::size_t>(std::max(0, bound.component()));
+    if (index < numbers.size()) r.limits.push_back({&bound, numbers[index] * bound.unit});
   }
-  r.z_total_max = scaled(limits.optional_number("z_total_max_mm", Range::positive()), mm);
   return r;
 }
 
@@ -198,16 +201,18 @@ std::vector<InventoryCamera> read_cameras(SetupDocument& document) {
 
 /// Reports a z_total_max_mm that contradicts the lower limits of the distances.
 void check_total(DesignQuestion const& question, SetupTable limits) {
-  if (!question.requirements.z_total_max) return;
+  Bound const& total = requirement("limits.z_total_max_mm");
   double least = 0;
   for (FreeChoice const& free : question.free) {
     if (free.choice != Choice::z_a && free.choice != Choice::z_d) continue;
     least += free.values.empty() ? free.low : *std::min_element(free.values.begin(), free.values.end());
   }
-  if (least <= *question.requirements.z_total_max * (1 + allowed_excess)) return;
-  limits.problem("z_total_max_mm", fmt::format("conflicts with the other limits (the sum of z_a_mm and z_d_mm is at "
-                                               "least {:.6g} mm); increase it or reduce those",
-                                               least / mm));
+  for (Limit const& limit : question.requirements.limits) {
+    if (limit.bound != &total || least <= limit.value * (1 + allowed_excess)) continue;
+    limits.problem("z_total_max_mm", fmt::format("conflicts with the other limits (the sum of z_a_mm and z_d_mm is at "
+                                                 "least {:.6g} mm); increase it or reduce those",
+                                                 least / mm));
+  }
 }
 
 }  // namespace
@@ -224,7 +229,7 @@ std::optional<DesignQuestion> read_design_question(SetupDocument& document) {
     return std::nullopt;
   }
   DesignQuestion question;
-  question.requirements = read_requirements(requirements, limits);
+  question.requirements = read_requirements(root);
   question.free = read_free(document, limits, inventory);
   question.cameras = read_cameras(document);
   question.lenses = owned_files(document, "lenses");

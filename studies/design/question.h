@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "render/base/vec.h"
 #include "render/setup/setup_node.h"
 #include "render/setup/setup_table.h"
 
@@ -40,15 +39,18 @@ inline constexpr std::array<char const*, 4> objective_keys{"gradient_min_kg_m4",
                                                            "z_total_mm"};
 inline constexpr std::array<double, 4> objective_scales{1, 1e-3, 1, 1e-3};
 
-/// Requirements on a design; empty members are not required. In SI.
+struct Bound;
+
+/// A constraint with its limit, in SI.
+struct Limit {
+  Bound const* bound;
+  double value;
+};
+
+/// Requirements on a design.
 struct Requirements {
   Objective objective = Objective::gradient_min;
-  std::optional<double> gradient_min;      ///< [kg/m^4]
-  std::optional<double> resolution;        ///< [m]
-  std::optional<double> displacement_max;  ///< [px]
-  std::optional<double> uncertainty_max;   ///< [px]
-  std::optional<Vec2d> field_of_view;      ///< width and height in the medium [m]
-  std::optional<double> z_total_max;       ///< [m]
+  std::vector<Limit> limits;  ///< of the given keys, in the order of requirements()
 };
 
 /// A design variable with its admissible values or interval, in SI.
@@ -68,7 +70,7 @@ struct InventoryCamera {
 struct DesignQuestion {
   Requirements requirements;
   std::vector<FreeChoice> free;
-  std::vector<InventoryCamera> cameras;  ///< empty: the setup's camera
+  std::vector<InventoryCamera> cameras;  ///< cameras to choose from; empty: the setup's camera
   std::vector<std::string> lenses;       ///< absolute paths of prescription files, in addition to the thin lenses
 };
 

@@ -26,7 +26,7 @@ DesignProblem complete(DesignProblem problem, DesignBranch const& branch) {
 
 /// Makes a limit stricter by a factor above 1, and looser by a factor below 1.
 double moved(Limit const& limit, double factor) {
-  return from_below(limit.bound) ? limit.value * factor : limit.value / factor;
+  return limit.bound->from_below ? limit.value * factor : limit.value / factor;
 }
 
 /// Branches of a question, and the designs of each found so far.
@@ -50,7 +50,7 @@ std::vector<std::string> binding_of(DesignProblem const& problem, BranchOutcome 
   std::vector<std::string> names;
   DesignPoint<double> const bench = design_point_at(best.branch, best.solution.logarithms);
   for (Limit const& limit : complete(problem, best.branch).limits) {
-    if (excess(limit, bench) > -spare) names.push_back(bound_name(limit.bound));
+    if (excess(limit, bench) > -spare) names.emplace_back(limit.bound->name);
   }
   for (std::size_t i = 0; i < best.branch.continuous.size(); ++i) {
     FreeChoice const& free = best.branch.continuous[i];
@@ -71,7 +71,7 @@ double add_costs(Recommendation& answer, DesignProblem const& problem, Search& s
   double const best = answer.outcomes.front().solution.objective;
   double dearest = 1e-4, least = best;
   answer.costs.clear();
-  answer.front_bound = Bound::focus;
+  answer.front_bound = nullptr;
   for (std::size_t i = 0; i < problem.limits.size(); ++i) {
     double const then = search.objective_with(problem, i, moved(problem.limits[i], 1 + stricter));
     least = std::min(least, then);
@@ -85,11 +85,11 @@ double add_costs(Recommendation& answer, DesignProblem const& problem, Search& s
   return least;
 }
 
-/// Adds the front.
-/// @return the best objective at limits at least as strict as required
+/// Adds the front: the best objectives for a series of limits of one requirement.
+/// @return the best of the objectives whose limit is at least as strict as the required one
 double add_front(Recommendation& answer, DesignProblem const& problem, Search& search) {
   answer.front.clear();
-  if (answer.front_bound == Bound::focus) return HUGE_VAL;
+  if (!answer.front_bound) return HUGE_VAL;
   auto const of_front = std::find_if(problem.limits.begin(), problem.limits.end(),
                                      [&](Limit const& limit) { return limit.bound == answer.front_bound; });
   auto const index = static_cast<std::size_t>(of_front - problem.limits.begin());
@@ -185,7 +185,7 @@ void add_relaxations(Recommendation& answer, DesignProblem const& problem, std::
     answer.conflicts.push_back(problem.limits[index].bound);
     std::vector<std::size_t> those;
     for (std::size_t i = 0; i < problem.limits.size(); ++i) {
-      bool const both_views = from_below(problem.limits[i].bound) && from_below(problem.limits[index].bound);
+      bool const both_views = problem.limits[i].bound->from_below && problem.limits[index].bound->from_below;
       if (i == index || both_views) those.push_back(i);
     }
     if (std::optional<double> const factor = least_factor(problem, those, search)) {
@@ -215,9 +215,9 @@ std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vec
     DesignProblem const whole = complete(problem, branches[i]);
     BranchOutcome& outcome = outcomes[i];
     outcome.branch = branches[i];
-    if (auto const bound = excluded_by(whole, branches[i])) {
+    if (Bound const* const bound = excluded_by(whole, branches[i])) {
       outcome.skipped = true;
-      outcome.solution.worst = *bound;
+      outcome.solution.worst = bound;
     } else {
       outcome.solution = solve(whole, branches[i], known ? (*known)[i] : KnownDesigns{});
       if (known) (*known)[i].push_back(outcome.solution.logarithms);

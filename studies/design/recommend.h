@@ -17,13 +17,13 @@ struct BranchOutcome {
 
 /// Cost of a requirement: change of the objective if the requirement is 1 % stricter.
 struct RequirementCost {
-  Bound bound;
+  Bound const* bound;
   double change = 0;  ///< relative change of the objective; infinite if no design is feasible then [1]
 };
 
 /// Limit of a requirement to which it would have to be relaxed, in SI.
 struct Relaxation {
-  Bound bound;
+  Bound const* bound;
   double value;
 };
 
@@ -35,16 +35,16 @@ struct FrontPoint {
 
 /// Answer to a design question.
 struct Recommendation {
-  std::vector<BranchOutcome> outcomes;  ///< of every branch; the best one first if any is feasible
+  std::vector<BranchOutcome> outcomes;  ///< outcomes of every branch; the best one first if any is feasible
   // if a design is feasible
   std::vector<std::string> binding;  ///< active limits of the best design, including ends of intervals
   std::vector<RequirementCost> costs;
   /// trade-off: the best objective for each limit of the requirement `front_bound`; empty if no requirement restricts
   /// the objective
   std::vector<FrontPoint> front;
-  Bound front_bound = Bound::focus;
+  Bound const* front_bound = nullptr;
   // if no design is feasible
-  std::vector<Bound> conflicts;  ///< smallest set of requirements that cannot be met together
+  std::vector<Bound const*> conflicts;  ///< smallest set of requirements that cannot be met together
   /// Branch with the smallest violation if no design is feasible even without requirements.
   std::optional<BranchOutcome> without_requirements;
   std::vector<Relaxation> relaxations;  ///< relaxations of a single requirement, each of which suffices

@@ -24,44 +24,6 @@ std::string objective_text(AnsweredQuestion const& answered, double objective) {
                      objective_units[objective_index(answered)]);
 }
 
-/// Describes why a set-up does not meet a constraint. @param violation  as BranchSolution::violation
-std::string violation_text(Bound bound, double violation) {
-  double const percent = 100 * std::expm1(violation);
-  RandomErrorRange const& known = random_error_range;
-  switch (bound) {
-    case Bound::resolution:
-      return fmt::format("does not meet {}: the chain transmits {:.3f} of that wavelength instead of {:.3f}",
-                         bound_name(bound), transfer_at_resolution - violation, transfer_at_resolution);
-    case Bound::focus:
-      return "the dots are too close to the lens to be focused";
-    case Bound::dots_clear:
-      return "the dots are inside the medium";
-    case Bound::lens_clear:
-      return "the lens is inside the medium";
-    case Bound::dot_least:
-      return fmt::format("the dot images are too small: the random error is known from {:.3g} px on, {:.3g} % more",
-                         known.least_dot, percent);
-    case Bound::dot_most:
-      return fmt::format("the dot images are {:.3g} % larger than {:.3g} px, up to which the random error is known",
-                         percent, known.most_image);
-    case Bound::coverage:
-      return fmt::format(
-          "the dots are too close to each other: they cover {:.3g} % more than the possible {:.3g} % of "
-          "the target",
-          percent, 100 * most_coverage);
-    case Bound::noise_most:
-      return fmt::format(
-          "too little light: the image noise is {:.3g} % above {:.3g} % of the peak, up to which the "
-          "random error is known",
-          percent, 100 * known.most_noise);
-    case Bound::full_well:
-      return fmt::format("too much light: the peaks exceed the full well by {:.3g} %", percent);
-    default:
-      return fmt::format("does not meet {}: {:.3g} % too {}", bound_name(bound), percent,
-                         from_below(bound) ? "small" : "large");
-  }
-}
-
 /// Returns the change of the objective relative to the recommended one, " (+3.1 %)".
 std::string change_text(AnsweredQuestion const& answered, double objective) {
   return fmt::format(" ({:+.2g} %)", 100 * (objective / answered.chosen().solution.objective - 1));
@@ -85,7 +47,7 @@ bool differ_in_stop_only(DesignBranch const& a, DesignBranch const& b) {
 
 enum class Direction { smaller, larger };
 
-/// Returns the verdict on the next f-number among the values of the question; empty if there is none.
+/// Describes the result for the next f-number among the values of the question; empty if there is none.
 std::string listed_stop_text(AnsweredQuestion const& answered, Direction direction) {
   BranchOutcome const& chosen = answered.chosen();
   double const own = chosen.branch.value[f_number_index];
@@ -102,23 +64,23 @@ std::string listed_stop_text(AnsweredQuestion const& answered, Direction directi
                      next->solution.feasible() ? change_text(answered, next->solution.objective) : "");
 }
 
-/// Returns the verdict on the set-up with a stop larger or smaller by a factor sqrt(2) and everything else unchanged.
+/// Describes the result for the set-up with a stop larger or smaller by a factor sqrt(2) and everything else unchanged.
 std::string full_stop_text(AnsweredQuestion const& answered, Direction direction, FreeChoice const* free) {
   DesignPoint<double> bench = answered.best();
   bench.f_number *= direction == Direction::larger ? std::sqrt(2.0) : std::sqrt(0.5);
   std::string const name = fmt::format("f/{:.4g}", bench.f_number);
   if (!free) return name + ": lens.f_number is not a free key";
   if (bench.f_number < free->low || bench.f_number > free->high) return name + ": is outside limits.f_number";
-  std::vector<Limit> limits = required_limits(answered.question.requirements);
+  std::vector<Limit> limits = answered.question.requirements.limits;
   std::vector<Limit> const feasible = feasibility_limits(*bench.given);
   limits.insert(limits.end(), feasible.begin(), feasible.end());
   double worst = -HUGE_VAL;
-  Bound bound = Bound::focus;
+  Bound const* bound = &in_focus;
   for (Limit const& limit : limits) {
     double const here = excess(limit, bench);
     if (here > worst) worst = here, bound = limit.bound;
   }
-  if (worst > allowed_excess) return fmt::format("{}: {}", name, violation_text(bound, worst));
+  if (worst > allowed_excess) return fmt::format("{}: {}", name, describe_violation(*bound, worst));
   double const objective = objective_value(answered.question.requirements.objective, bench, bench);
   return fmt::format("{}: {}{}", name, objective_text(answered, objective), change_text(answered, objective));
 }
@@ -148,9 +110,9 @@ double written_objective(AnsweredQuestion const& answered, double objective) {
 
 std::string outcome_verdict(AnsweredQuestion const& answered, BranchOutcome const& outcome) {
   BranchSolution const& solution = outcome.solution;
-  if (outcome.skipped) return fmt::format("skipped, {} excludes it", bound_name(solution.worst));
+  if (outcome.skipped) return fmt::format("skipped, {} excludes it", solution.worst->name);
   return solution.feasible() ? objective_text(answered, solution.objective)
-                             : violation_text(solution.worst, solution.violation);
+                             : describe_violation(*solution.worst, solution.violation);
 }
 
 std::string recommendation_text(AnsweredQuestion const& answered) {

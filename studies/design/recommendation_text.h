@@ -15,8 +15,8 @@ double written_objective(AnsweredQuestion const& answered, double objective);
 std::string outcome_verdict(AnsweredQuestion const& answered, BranchOutcome const& outcome);
 
 /// Describes the recommended set-up in five lines: lens, stop, target distance, dots, and smallest gradient with the
-/// random error. Further lines give the verdict on the next larger and the next smaller f-number: of the inventory,
-/// with the other free keys optimised for it, or else a full stop away, with everything else unchanged.
+/// random error. Further lines describe the results for the next larger and the next smaller f-number: of the
+/// inventory, with the other free keys optimised for it, or else a full stop away, with everything else unchanged.
 /// @pre answered.answer.feasible()
 std::string recommendation_text(AnsweredQuestion const& answered);
 

@@ -14,6 +14,7 @@
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
 #include "studies/case/json_text.h"
+#include "studies/design/sheet_text.h"
 
 namespace gladstone {
 namespace {
@@ -43,12 +44,12 @@ bool holds(Keys const& keys, std::string const& key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-SheetRow plain_row(char const* key, char const* name, double value, char const* unit_name, std::string note = "") {
-  return {"", key, name, value, unit_name, "", "", Margin::none, std::move(note)};
+ResultRow plain_row(char const* key, char const* name, double value, char const* unit_name, std::string note = "") {
+  return {.key = key, .label = name, .value = value, .unit = unit_name, .note = std::move(note)};
 }
 
 /// Adds paraxial values of any camera, for the plane of the dots or particles.
-void add_camera_rows(std::vector<SheetRow>& rows, Setup const& setup) {
+void add_camera_rows(std::vector<ResultRow>& rows, Setup const& setup) {
   double const pixel = setup.pixel_size();
   rows.push_back(plain_row("magnification", "magnification", setup.imaging().magnification, "", "near the axis"));
   rows.push_back(plain_row("field_of_view_mm", "field of view in the plane of the dots, width",
@@ -62,13 +63,13 @@ void add_camera_rows(std::vector<SheetRow>& rows, Setup const& setup) {
 }
 
 /// Adds the size of the dots in the image.
-void add_dot_image(std::vector<SheetRow>& rows, Setup const& setup) {
+void add_dot_image(std::vector<ResultRow>& rows, Setup const& setup) {
   rows.push_back(plain_row("geometric_dot_px", "geometric image of a dot, diameter", setup.geometric_dot_px(), "px"));
   rows.push_back(plain_row("defocus_diameter_px", "circle of confusion of the dots", setup.defocus_diameter_px(), "px",
                            "0 in focus"));
 }
 
-void add_lenslets(std::vector<SheetRow>& rows, Setup const& setup) {
+void add_lenslets(std::vector<ResultRow>& rows, Setup const& setup) {
   auto const* const lenslets = setup.element<LensletSetup>();
   if (!lenslets) return;
   double const pixels = lenslets->pitch / setup.camera.pixel_pitch;
@@ -89,7 +90,7 @@ double count_dots_in_view(Setup const& setup, DotPattern const& dots) {
       std::count_if(dots.centre.begin(), dots.centre.end(), [&scene](Vec2d centre) { return scene.in_view(centre); }));
 }
 
-void add_dot_numbers(std::vector<SheetRow>& rows, Setup const& setup) {
+void add_dot_numbers(std::vector<ResultRow>& rows, Setup const& setup) {
   bool const image = setup.target.kind == TargetKind::image;
   DotPattern const dots = build_target(setup);
   rows.push_back(plain_row("dots", image ? "lit pixels of the target's image" : "dots on the target",
@@ -117,7 +118,7 @@ void add_bos(SetupOverview& overview, CaseSetup& loaded) {
   }
   if (sheet) {
     FixedDesignParameters const given = collect_fixed_parameters(loaded);
-    for (SheetRow const& row : bos_sheet(setup, make_design_point(setup, given)).rows) {
+    for (ResultRow const& row : bos_sheet(setup, make_design_point(setup, given)).rows) {
       bool const wanted = holds(bos_keys, row.key) && (dots || !holds(pattern_keys, row.key)) &&
                           (!image || !holds(dot_keys, row.key)) && (thin || !holds(thin_lens_keys, row.key));
       if (wanted) overview.rows.push_back(row);
@@ -139,7 +140,7 @@ void add_piv(SetupOverview& overview, CaseSetup& loaded) {
   }
   bool const flow_read = !setup.piv->flow.file;
   if (!flow_read) overview.notes.emplace_back("the velocity file is not read: displacements are not given");
-  for (SheetRow const& row : piv_sheet(loaded).rows) {
+  for (ResultRow const& row : piv_sheet(loaded).rows) {
     if (flow_read || !holds(flow_keys, row.key)) overview.rows.push_back(row);
   }
   if (std::isfinite(overview.cost.sources)) {
@@ -238,13 +239,7 @@ SetupOverview make_setup_overview(CaseSetup loaded) {
 }
 
 std::string overview_text(SetupOverview const& overview) {
-  std::string text;
-  for (SheetRow const& row : overview.rows) {
-    std::string const value = fmt::format("{:.6g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
-    text += fmt::format("  {:<50}{}", row.name, value);
-    if (row.margin != Margin::none) text += fmt::format("  [{}]", margin_word(row.margin));
-    text += (row.note.empty() ? "" : "  (" + row.note + ')') + '\n';
-  }
+  std::string text = rows_text(overview.rows);
   text += cost_text(overview.cost);
   for (std::string const& note : overview.notes) text += "  note: " + note + '\n';
   return text;
@@ -252,11 +247,7 @@ std::string overview_text(SetupOverview const& overview) {
 
 nlohmann::ordered_json overview_json(SetupOverview const& overview) {
   nlohmann::ordered_json json{{"experiment", overview.experiment}};
-  for (SheetRow const& row : overview.rows) json[row.key] = number_or_null(row.value);
-  if (json.contains("field_of_view_height_mm")) {
-    json["field_of_view_mm"] = {json["field_of_view_mm"], json["field_of_view_height_mm"]};
-    json.erase("field_of_view_height_mm");
-  }
+  json.update(sheet_values(overview.rows));
   json["notes"] = overview.notes;
   json["render"] = cost_json(overview.cost);
   return json;

@@ -13,15 +13,15 @@ namespace gladstone {
 /// Quantities that follow from a setup of one camera, before anything is rendered.
 struct SetupOverview {
   std::string experiment;          ///< "bos", "piv" or "calibration"
-  std::vector<SheetRow> rows;      ///< quantities; the rows of the design sheet where it applies
+  std::vector<ResultRow> rows;     ///< quantities; the rows of the design sheet where it applies
   std::vector<std::string> notes;  ///< quantities that are not given, and the reason
   RenderCost cost;
 };
 
 /// Collects the rows of the design sheet that describe image scale, view, blur, images of dots or particles,
 /// sensitivity and depth, the number of dots or particles, and the cost of rendering. No field is read and no ray is
-/// traced through it; a gradient that is not known in closed form is replaced by the sheet's usual one. Cameras that
-/// the sheet does not describe have paraxial values.
+/// traced through it. If a field is not given by a closed form, the sheet's default gradient is used. Cameras that the
+/// sheet does not describe have paraxial values.
 /// @throws DataError if a file of the setup cannot be read
 SetupOverview make_setup_overview(CaseSetup loaded);
 

@@ -23,8 +23,8 @@ double largest_gradient(Setup const& setup) {
   if (auto const known = closed_form_gradient(setup)) return *known;
   double largest = 0;
   constexpr int lattice_px = 4;
-  Scene const scene = with_chosen_step(build_scene(setup));
-  for (Vec2d const gradient : map_field(scene, lattice_px).density_gradient) {
+  Scene const scene = build_scene(setup);
+  for (Vec2d const gradient : map_field(scene, plan_step(scene).step, lattice_px).density_gradient) {
     largest = std::max(largest, length(gradient));
   }
   return largest;
@@ -44,11 +44,6 @@ std::optional<double> closed_form_gradient(Setup const& setup) {
       make_closed_form(setup.medium));
 }
 
-char const* margin_word(Margin margin) {
-  constexpr char const* words[] = {"", "green", "marginal", "violated"};
-  return words[static_cast<int>(margin)];
-}
-
 Margin at_least(double value, double good, double least) {
   return value >= good ? Margin::green : value >= least ? Margin::marginal : Margin::violated;
 }
@@ -57,8 +52,8 @@ Margin at_most(double value, double good, double most) {
   return value <= good ? Margin::green : value <= most ? Margin::marginal : Margin::violated;
 }
 
-SheetRow const& DesignSheet::row(std::string const& key) const {
-  auto const found = std::find_if(rows.begin(), rows.end(), [&key](SheetRow const& row) { return row.key == key; });
+ResultRow const& DesignSheet::row(std::string const& key) const {
+  auto const found = std::find_if(rows.begin(), rows.end(), [&key](ResultRow const& row) { return row.key == key; });
   GLADSTONE_EXPECTS(found != rows.end());
   return *found;
 }
@@ -85,16 +80,17 @@ DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters 
   return {&given, setup.lens.focal_length, setup.lens.f_number, setup.z_a, setup.z_d, setup.dot_diameter()};
 }
 
-std::vector<std::string> list_neglected_effects(Setup const& setup) {
-  std::vector<std::string> warnings;
+Warnings list_neglected_effects(Setup const& setup) {
+  Warnings warnings;
   if (!setup.experiment().correlated) return warnings;  // no sheet describes it
   if (setup.lens.focus != Focus::target && setup.experiment().sources.on_target) {
-    warnings.emplace_back("lens.focus: the sheet assumes dots in focus, but these are out of focus");
+    warnings.push_back(
+        {WarningCode::approximated, "lens.focus", "the sheet assumes dots in focus, but these are out of focus"});
   }
   if (!setup.has_closed_form_layout()) {
-    warnings.emplace_back(
-        "the sheet assumes a thin lens on the axis, perpendicular to the target: it neglects poses, tilts, other "
-        "elements, distortion and aberrations");
+    warnings.push_back({WarningCode::approximated, "",
+                        "the sheet assumes a thin lens on the axis, perpendicular to the target: it neglects poses, "
+                        "tilts, other elements, distortion and aberrations"});
   }
   return warnings;
 }

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/case/case.h"
+#include "studies/case/result_rows.h"
 #include "studies/design/design_point.h"
 
 namespace gladstone {
@@ -12,41 +14,18 @@ namespace gladstone {
 /// Source of the formulas for the image diameters of dots and particles.
 inline constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
 
-/// Rating of a value of the design sheet against the usual recommendation.
-enum class Margin {
-  none,      ///< no recommendation
-  green,     ///< met with a margin
-  marginal,  ///< met or missed by little
-  violated,
-};
-
-/// Returns "green", "marginal", "violated" or an empty text.
-char const* margin_word(Margin margin);
 /// Rates a value that should be large: green from `good` on, violated below `least`.
 Margin at_least(double value, double good, double least);
 /// Rates a value that should be small: green up to `good`, violated above `most`.
 Margin at_most(double value, double good, double most);
 
-/// One closed-form quantity of the design sheet.
-struct SheetRow {
-  std::string id;   ///< its number in docs/design.md, F1 to F27
-  std::string key;  ///< for programs, with the unit as suffix
-  std::string name;
-  double value;  ///< in `unit`; NaN: not applicable
-  std::string unit;
-  std::string formula;
-  std::string source;
-  Margin margin = Margin::none;
-  std::string note;  ///< criterion of the margin, or a remark
-};
-
 /// Closed-form quantities of a setup, in the order of their numbers.
 struct DesignSheet {
-  std::vector<SheetRow> rows;
+  std::vector<ResultRow> rows;
 
   /// Returns the row of a key.
   /// @pre the row exists
-  SheetRow const& row(std::string const& key) const;
+  ResultRow const& row(std::string const& key) const;
   double operator[](std::string const& key) const { return row(key).value; }
 };
 
@@ -62,7 +41,7 @@ DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters 
 
 /// Returns warnings for properties of a setup that closed forms neglect: defocused dots, a posed camera, windows.
 /// None for calibrations, which have no sheet.
-std::vector<std::string> list_neglected_effects(Setup const& setup);
+Warnings list_neglected_effects(Setup const& setup);
 
 /// Returns the gradient for the sheet's displacements: the largest in view, or 10 kg/m^4 if there is none [kg/m^4].
 double sheet_gradient(FixedDesignParameters const& given);

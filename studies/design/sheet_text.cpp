@@ -3,24 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
+
+#include "studies/case/json_text.h"
 
 namespace gladstone {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-std::string value_text(SheetRow const& row) {
-  if (!std::isfinite(row.value)) return "unknown";
-  return fmt::format("{:.7g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
-}
-
-bool is_missed(SheetRow const& row) { return row.margin == Margin::violated || row.margin == Margin::marginal; }
+bool is_missed(ResultRow const& row) { return row.margin == Margin::violated || row.margin == Margin::marginal; }
 
 }  // namespace
 
@@ -31,37 +25,46 @@ std::string missed_rows_text(DesignSheet const& sheet) {
 }
 
 std::string sheet_text(DesignSheet const& sheet) {
-  std::vector<SheetRow> rows = sheet.rows;
+  std::vector<ResultRow> rows = sheet.rows;
   // First the rows that miss the usual recommendation, the worst first.
-  auto const urgency = [](SheetRow const& row) {
+  auto const urgency = [](ResultRow const& row) {
     return row.margin == Margin::violated ? 0 : row.margin == Margin::marginal ? 1 : 2;
   };
   std::stable_sort(rows.begin(), rows.end(),
-                   [&](SheetRow const& a, SheetRow const& b) { return urgency(a) < urgency(b); });
+                   [&](ResultRow const& a, ResultRow const& b) { return urgency(a) < urgency(b); });
   std::string text;
-  for (SheetRow const& row : rows) {
-    text += fmt::format("  {:<4}{:<50}{:<28}{}\n", row.id, row.name, value_text(row), margin_word(row.margin));
+  for (ResultRow const& row : rows) {
+    text +=
+        fmt::format("  {:<4}{:<49} {:<28}{}\n", row.id, row.symbol.empty() ? row.label : row.label + ", " + row.symbol,
+                    value_text(row), margin_word(row.margin));
     text += fmt::format("      = {}   [{}]{}{}\n", row.formula, row.source, row.note.empty() ? "" : "; ", row.note);
   }
   return text;
 }
 
+Json sheet_values(std::vector<ResultRow> const& rows) {
+  Json json = rows_json(rows);
+  if (json.contains("field_of_view_height_mm")) {
+    json["field_of_view_mm"] = {json["field_of_view_mm"], json["field_of_view_height_mm"]};
+    json.erase("field_of_view_height_mm");
+  }
+  return json;
+}
+
 Json sheet_json(DesignSheet const& sheet) {
-  Json json = Json::object(), rows = Json::array();
-  for (SheetRow const& row : sheet.rows) {
-    json[row.key] = or_null(row.value);
+  Json json = sheet_values(sheet.rows), rows = Json::array();
+  for (ResultRow const& row : sheet.rows) {
     rows.push_back({{"id", row.id},
                     {"key", row.key},
-                    {"name", row.name},
-                    {"value", or_null(row.value)},
+                    {"symbol", row.symbol},
+                    {"name", row.label},
+                    {"value", number_or_null(row.value)},
                     {"unit", row.unit},
                     {"formula", row.formula},
                     {"source", row.source},
                     {"margin", margin_word(row.margin)},
                     {"note", row.note}});
   }
-  json["field_of_view_mm"] = {json["field_of_view_mm"], json["field_of_view_height_mm"]};
-  json.erase("field_of_view_height_mm");
   json["rows"] = rows;
   return json;
 }

@@ -90,8 +90,8 @@ void enter(Repeats& repeats, ObservedCase const& seen, double border) {
     repeats.lens = all.point.displacement_px;
     repeats.setup = seen.prepared.scene.setup;
     repeats.magnification = seen.prepared.scene.imaging.magnification;
-    RayBudget const& plan = seen.prepared.rays;
-    bool const plain = resolve_render_method(seen.prepared.scene) == RenderMethod::focused_dots && plan.fineness == 1;
+    RenderPlan const& plan = seen.prepared.plan;
+    bool const plain = plan.method == RenderMethod::focused_dots && plan.fineness == 1;
     if (plain && !plan.adaptive_criteria) repeats.rays = plan.rays;
   }
   std::vector<Vec2d>& error = repeats.error.emplace_back(all.mask.size(), Vec2d{not_a_number, not_a_number});

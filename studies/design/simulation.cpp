@@ -39,7 +39,7 @@ struct BenchStudies {
   std::size_t repeats;
   std::uint64_t seed;
 
-  /// @param rays  number per dot; nullopt: "auto"
+  /// @param rays  number of rays per dot; nullopt: "auto"
   StudyFile of(std::vector<AxisValue> media, std::optional<std::uint64_t> rays) const {
     SetupDocument setup = base.copy();
     if (rays) setup.set({"render", "rays_per_dot"}, setup_integer(static_cast<long long>(*rays)));

@@ -27,7 +27,7 @@ struct WaveShares {
 struct SystematicCause {
   std::string name;  ///< name of the budget's term; "window" includes the estimator
   double simulated = 0;
-  double predicted = 0;  ///< by formula; 0 if there is none
+  double predicted = 0;  ///< error by formula; 0 if there is no formula
 };
 
 /// Errors of the simulated measurement of a design. Repeats differ in dots, rays and noise; the systematic error is
@@ -35,13 +35,13 @@ struct SystematicCause {
 struct SimulatedDesign {
   int columns = 0, rows = 0;  ///< size of the simulated central part of the image [px]
   std::size_t repeats = 0;
-  std::size_t vectors = 0;       ///< valid in every repeat and away from the border
+  std::size_t vectors = 0;       ///< number of vectors that are valid in every repeat and away from the border
   Estimate random_px;            ///< random error per component, for the setup's medium
   Estimate bias_px;              ///< systematic error against Eq. 9, rms over vectors and components [px]
   double predicted_bias_px = 0;  ///< loss by light cone, dot and window for the same field, by formula [px]
   std::vector<SystematicCause> causes;
   double displacement_px = 0;  ///< largest true displacement [px]
-  Estimate peak_electrons;     ///< at the centre of the dot images [e]
+  Estimate peak_electrons;     ///< charge at the centre of the dot images [e]
   double magnification = 0;    ///< M [1]
   Estimate resolution;         ///< wavelength at which the measurement has a transfer of 1/sqrt(2) [m]
   std::vector<WaveShares> waves;

@@ -51,9 +51,9 @@ double objective_of(unsigned n, double const* x, double* gradient, void* data) {
     return x[n - 1];
   }
   DesignPoint<double> const here = task.numbers(x);
-  double const lacking = excess({Bound::focus, 0}, here);
+  double const lacking = excess({&in_focus, 0}, here);
   if (lacking > 0) {  // no image exists: minimize the excess instead
-    if (gradient) copy_derivatives(excess({Bound::focus, 0}, task.jets(x)), task.own(), gradient);
+    if (gradient) copy_derivatives(excess({&in_focus, 0}, task.jets(x)), task.own(), gradient);
     return 100 + lacking;
   }
   if (!gradient) return std::log(objective_value(task.problem->objective, here, here));
@@ -176,7 +176,7 @@ std::vector<double> minimised(Task& task, std::vector<double> x) {
 
 }  // namespace
 
-std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch const& branch) {
+Bound const* excluded_by(DesignProblem const& problem, DesignBranch const& branch) {
   // View and image distance increase with both distances; their sum is smallest at the lower ends of the intervals.
   std::vector<double> least, most;
   for (FreeChoice const& free : branch.continuous) {
@@ -187,13 +187,12 @@ std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch cons
   }
   DesignPoint<double> const near = design_point_at(branch, least), far = design_point_at(branch, most);
   for (Limit const& limit : problem.limits) {
-    if (limit.bound == Bound::z_total && near.z_b() > limit.value * (1 + allowed_excess)) return limit.bound;
-    bool const farthest = limit.bound == Bound::focus || limit.bound == Bound::view_width ||
-                          limit.bound == Bound::view_height || limit.bound == Bound::dots_clear ||
-                          limit.bound == Bound::lens_clear;
-    if (farthest && excess(limit, far) > allowed_excess) return limit.bound;
+    using Extreme = Bound::Extreme;
+    Extreme const extreme = limit.bound->extreme;
+    if (extreme == Extreme::near && limit.bound->excess.value(limit.value, near) > allowed_excess) return limit.bound;
+    if (extreme == Extreme::far && excess(limit, far) > allowed_excess) return limit.bound;
   }
-  return std::nullopt;
+  return nullptr;
 }
 
 BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch, KnownDesigns const& known) {

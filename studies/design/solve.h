@@ -10,10 +10,10 @@ inline constexpr double allowed_excess = 1e-7;
 
 /// Best design of a branch.
 struct BranchSolution {
-  std::vector<double> logarithms;  ///< continuous design variables at the solution
-  double objective = HUGE_VAL;     ///< in SI
+  std::vector<double> logarithms;  ///< logarithms of the continuous design variables
+  double objective = HUGE_VAL;     ///< objective [SI]
   double violation = HUGE_VAL;     ///< largest excess over a limit
-  Bound worst = Bound::focus;      ///< limit with the largest excess
+  Bound const* worst = &in_focus;  ///< limit with the largest excess
 
   bool feasible() const { return violation <= allowed_excess; }
 };
@@ -22,9 +22,9 @@ struct BranchSolution {
 /// serve as additional starting points; the solution is never worse than the best of them.
 using KnownDesigns = std::vector<std::vector<double>>;
 
-/// Returns a limit that no design of the branch can meet, determined from the ends of its intervals alone; nullopt: not
+/// Returns a limit that no design of the branch can meet, determined from the ends of its intervals alone; null: not
 /// excluded.
-std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch const& branch);
+Bound const* excluded_by(DesignProblem const& problem, DesignBranch const& branch);
 
 /// Minimizes the objective within the limits by sequential quadratic programming (Kraft's SLSQP, ACM Trans. Math.
 /// Softw. 20 (1994) 262, as implemented in NLopt) in the logarithms of the design variables, with derivatives from Jets

@@ -62,17 +62,18 @@ std::string why_resolved(SimulatedDesign const& simulated, DesignPoint<double> c
   auto const farthest = std::max_element(shares.begin(), shares.end(), [](Share const& a, Share const& b) {
     return std::abs(a.simulated - a.predicted) < std::abs(b.simulated - b.predicted);
   });
-  return fmt::format("{}: transmits {:.3f} instead of {:.3f} at {:.4g} mm ({})", farthest->name, farthest->simulated,
-                     farthest->predicted, wave.wavelength / mm, farthest->because);
+  return fmt::format("{}: amplitude transfer of {:.3f} instead of {:.3f} at a wavelength of {:.4g} mm ({})",
+                     farthest->name, farthest->simulated, farthest->predicted, wave.wavelength / mm, farthest->because);
 }
 
-/// Largest displacement either way in the formula's study, which covers all fractions of a pixel [px].
+/// Largest displacement, of either sign, in the study of the formula, which covers all sub-pixel fractions [px].
 constexpr double studied_displacement_px = 0.5;
 
 std::string why_random(SimulatedDesign const& simulated) {
   if (simulated.displacement_px < studied_displacement_px) {
-    return fmt::format("displacements reach only {:.2g} px; the formula covers all fractions of a pixel",
-                       simulated.displacement_px);
+    return fmt::format(
+        "the largest displacement is only {:.2g} px, while the formula is a mean over all sub-pixel fractions",
+        simulated.displacement_px);
   }
   return "noise, dots or strain differ from those in the study of the formula";
 }
@@ -81,40 +82,6 @@ std::string why_lit(DesignPoint<double> const& bench) {
   bool const automatic = !bench.given->light && !bench.given->camera.exposure_e;
   return automatic ? "exposure = \"auto\" depends on the brightest pixel, where dots are close together"
                    : "light of neighbouring dots, or vignetting";
-}
-
-/// Returns the smallest detectable gradient, at two standard deviations, from the simulated random error and
-/// magnification.
-Estimate gradient_seen(SimulatedDesign const& simulated, DesignPoint<double> const& bench) {
-  double const per_px = 2 / (bench.sensitivity() * simulated.magnification / bench.magnification());
-  return {simulated.random_px.value * per_px, simulated.random_px.standard_error * per_px};
-}
-
-Estimate estimate_view_size(SimulatedDesign const& simulated, DesignPoint<double> const& bench, int pixels) {
-  double const at_medium = simulated.magnification * bench.z_b() / bench.z_a;
-  return {pixels * bench.given->camera.pixel_pitch / at_medium, 0};
-}
-
-/// Returns prediction and simulation of a limited quantity; nullopt if a simulation adds no information.
-std::optional<std::pair<double, Estimate>> simulated_of(Bound bound, SimulatedDesign const& simulated,
-                                                        DesignPoint<double> const& bench) {
-  CameraSetup const& camera = bench.given->camera;
-  switch (bound) {
-    case Bound::gradient_min:
-      return {{bench.smallest_gradient(), gradient_seen(simulated, bench)}};
-    case Bound::resolution:
-      return {{resolved_wavelength(bench), simulated.resolution}};
-    case Bound::displacement_max:
-      return {{bench.largest_displacement_px(), Estimate{simulated.displacement_px, 0}}};
-    case Bound::uncertainty_max:
-      return {{bench.random_error(), simulated.random_px}};
-    case Bound::view_width:
-      return {{camera.columns * bench.pixel_at_medium(), estimate_view_size(simulated, bench, camera.columns)}};
-    case Bound::view_height:
-      return {{camera.rows * bench.pixel_at_medium(), estimate_view_size(simulated, bench, camera.rows)}};
-    default:
-      return std::nullopt;
-  }
 }
 
 VerifiedDesign simulated_bench(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
@@ -138,7 +105,7 @@ VerifiedDesign simulated_bench(DesignQuestion const& question, std::vector<Desig
     verified.simulated.failed = error.what();
   }
   progress.advance(simulated_cases(plan.repeats) - cases);
-  compare_with_formulas(verified, required_limits(question.requirements));
+  compare_with_formulas(verified, question.requirements.limits);
   return verified;
 }
 
@@ -166,7 +133,7 @@ bool VerifiedQuantity::agrees() const {
 
 bool VerifiedRequirement::kept() const {
   double const slack = coverage * simulated.standard_error + 1e-6 * required;
-  return from_below(bound) ? simulated.value >= required - slack : simulated.value <= required + slack;
+  return bound->from_below ? simulated.value >= required - slack : simulated.value <= required + slack;
 }
 
 bool VerifiedDesign::kept() const {
@@ -201,9 +168,9 @@ void compare_with_formulas(VerifiedDesign& verified, std::vector<Limit> const& r
                                                 : "the two waves cannot be distinguished");
   add("peak_electrons", bench.peak_electrons(), closed_form_accuracy, simulated.peak_electrons, 1, why_lit(bench));
   for (Limit const& limit : required) {
-    if (auto const told = simulated_of(limit.bound, simulated, bench)) {
-      verified.requirements.push_back({limit.bound, limit.value, told->first, told->second});
-    }
+    if (!limit.bound->simulated) continue;
+    auto const [predicted, found] = limit.bound->simulated(simulated, bench);
+    verified.requirements.push_back({limit.bound, limit.value, predicted, found});
   }
 }
 
@@ -226,7 +193,7 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
       verification.chosen = verification.benches.size() - 1;
     }
   }
-  std::vector<Limit> limits = required_limits(question.requirements);
+  std::vector<Limit> limits = question.requirements.limits;
   std::optional<VerifiedDesign> missed;
   for (VerifiedDesign const& one : verification.benches) {
     if (!missed && one.simulated.failed.empty()) missed = one;

@@ -13,10 +13,10 @@ namespace gladstone {
 /// A quantity predicted by formula and measured in simulation.
 struct VerifiedQuantity {
   std::string key;             ///< name with the unit as suffix
-  double predicted = 0;        ///< in the key's unit, like predicted_error and simulated
+  double predicted = 0;        ///< predicted value in the key's unit, like predicted_error and simulated
   double predicted_error = 0;  ///< standard error of the formula
   Estimate simulated;
-  bool rms = false;  ///< root mean square; the errors of its square are normally distributed
+  bool rms = false;  ///< true: a root mean square, the error of whose square is normally distributed
   std::string why;   ///< explanation of a disagreement
 
   /// Returns true if the difference is within two combined standard errors.
@@ -25,7 +25,7 @@ struct VerifiedQuantity {
 
 /// A requirement checked in simulation, in SI.
 struct VerifiedRequirement {
-  Bound bound;
+  Bound const* bound;
   double required = 0;
   double predicted = 0;
   Estimate simulated;
@@ -41,7 +41,7 @@ struct VerifiedDesign {
   SimulatedDesign simulated;
   std::vector<VerifiedQuantity> quantities;       ///< empty if the simulation failed
   std::vector<VerifiedRequirement> requirements;  ///< requirements that a simulation can check
-  /// solved with stricter limits, because earlier designs missed the required ones in simulation
+  /// true: solved with stricter limits, because earlier designs missed the required ones in simulation
   bool tightened = false;
 
   /// Returns true if the simulation succeeded and all requirements are met.
@@ -50,7 +50,7 @@ struct VerifiedDesign {
 
 /// Result of simulating a recommendation.
 struct Verification {
-  std::vector<VerifiedDesign> benches;  ///< in the order in which they were simulated
+  std::vector<VerifiedDesign> benches;  ///< designs in the order in which they were simulated
   std::optional<std::size_t> chosen;    ///< first design that meets the requirements
 
   /// Returns true if any simulation succeeded.

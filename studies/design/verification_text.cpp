@@ -32,8 +32,8 @@ std::string bench_text(VerifiedDesign const& one, DesignQuestion const& question
   }
   for (VerifiedRequirement const& requirement : one.requirements) {
     if (requirement.kept()) continue;
-    double const unit = bound_key(requirement.bound).unit;
-    text += fmt::format("    does not meet {} = {:.6g}: {:.5g} in simulation\n", bound_name(requirement.bound),
+    double const unit = requirement.bound->unit;
+    text += fmt::format("    does not meet {} = {:.6g}: {:.5g} in simulation\n", requirement.bound->name,
                         requirement.required / unit, requirement.simulated.value / unit);
   }
   if (one.kept()) text += "    meets the requirements\n";
@@ -57,8 +57,8 @@ Json quantities_json(VerifiedDesign const& one) {
 Json requirements_json(VerifiedDesign const& one) {
   Json rows = Json::array();
   for (VerifiedRequirement const& requirement : one.requirements) {
-    double const unit = bound_key(requirement.bound).unit;
-    rows.push_back({{"key", bound_name(requirement.bound)},
+    double const unit = requirement.bound->unit;
+    rows.push_back({{"key", requirement.bound->name},
                     {"required", requirement.required / unit},
                     {"simulated", number(requirement.simulated.value / unit)},
                     {"standard_error", number(requirement.simulated.standard_error / unit)},

@@ -1,7 +1,6 @@
 #include "studies/drawing/draw_figure.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <array>
 #include <cmath>
@@ -20,10 +19,11 @@ using figures::Layer;
 using figures::LegendPlace;
 using figures::Panel;
 
-constexpr double title_above = 16;              ///< from the title of a panel to its upper edge [px]
-constexpr double bar_gap = 10, bar_width = 13;  ///< from a map to its colour bar, and width of the bar [px]
-constexpr double title_beyond = 30;             ///< what the title of a panel may be wider on each side [px]
-constexpr int most_cells = 400;                 ///< of maps that are drawn cell by cell
+constexpr double title_above = 16;              ///< distance from the title of a panel to its upper edge [px]
+constexpr double bar_gap = 10, bar_width = 13;  ///< distance from a map to its colour bar, and width of the bar [px]
+constexpr double title_beyond = 30;             ///< maximum length by which a panel's title may extend beyond the panel
+                                                ///< on each side [px]
+constexpr int most_cells = 400;                 ///< maximum number of cells of maps that are drawn cell by cell
 
 std::string quoted(std::string_view text) { return GnuplotScript::quoted(text); }
 
@@ -288,16 +288,6 @@ class FigureScript {
 };
 
 }  // namespace
-
-bool draw_or_warn(std::function<void()> const& draw) {
-  try {
-    draw();
-    return true;
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-    return false;
-  }
-}
 
 void draw_figure(Figure const& figure, std::string const& path) { FigureScript(figure).write(path); }
 

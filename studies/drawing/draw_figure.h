@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "render/base/error.h"
@@ -16,10 +15,6 @@ class GnuplotMissing : public Error {
               "figures are not drawn: program gnuplot not found (Debian package gnuplot-nox); the numbers are written "
               "nevertheless") {}
 };
-
-/// Calls a function that draws figures; without gnuplot, warns that they are not drawn.
-/// @return false without gnuplot
-bool draw_or_warn(std::function<void()> const& draw);
 
 /// Draws a figure with gnuplot and the templates, as SVG or PDF if the path ends accordingly, else as PNG; the file is
 /// written atomically.

@@ -22,13 +22,13 @@ struct Tick {
 };
 
 struct Axis {
-  std::string label = {};                    ///< with the unit
+  std::string label = {};                    ///< title of the axis, with the unit
   double low = automatic, high = automatic;  ///< range; low > high: values decrease to the right, or upwards
   bool logarithmic = false;
-  std::vector<Tick> ticks = {};  ///< empty: automatic
+  std::vector<Tick> ticks = {};  ///< ticks of the axis; empty: automatic
   enum class Marks { texts, ticks, bare, none };
   Marks marks = Marks::texts;  ///< ticks with texts, ticks only, texts only, or nothing
-  bool slanted = false;        ///< texts that do not fit side by side
+  bool slanted = false;        ///< true: texts of ticks are slanted, since they do not fit side by side
 };
 
 enum class Dash { solid, dashed, dotted };
@@ -44,18 +44,19 @@ struct Layer {
     levels,  ///< x, y, half width: horizontal lines
     boxes,   ///< lower x, upper x, lower y, upper y
     arrows,  ///< x, y, length in x, length in y
-    spans,   ///< as arrows, with heads at both ends
+    spans,   ///< x, y, length in x, length in y: arrows with heads at both ends
     guides,  ///< x: vertical lines across the panel
   };
   Kind kind = Kind::line;
   std::vector<std::vector<double>> columns = {};
   std::string colour = "#404040";
-  std::string name = {};  ///< in the legend; empty: omitted there
-  double width = 2;       ///< of lines
+  std::string name = {};  ///< name in the legend; empty: not listed there
+  double width = 2;       ///< width of lines
   Dash dash = Dash::solid;
   int marker = 0;      ///< 0: none, -1: the smallest dot, from 1: circle, square, triangles, diamond, then hollow ones
   double size = 1;     ///< of the marker
   double opacity = 1;  ///< of areas
+  std::vector<std::string> notes = {};  ///< of every point, shown at the pointer in a browser; empty: its coordinates
 };
 
 enum class Palette { diverging, sequential, grey };
@@ -68,7 +69,7 @@ struct Map {
   double low = 0, high = 1;  ///< values of the end colours
   bool logarithmic = false;
   bool has_bar = true;           ///< colour bar to the right of the panel
-  std::vector<Tick> ticks = {};  ///< of the colour bar; empty: automatic
+  std::vector<Tick> ticks = {};  ///< ticks of the colour bar; empty: automatic
 };
 
 enum class Align { left, centre, right };
@@ -78,12 +79,12 @@ enum class TextRole { title, subtitle, caption, heading, label, note, fine_note,
 
 struct Label {
   std::string text;
-  double x, y;  ///< of its middle or end; on the page [px], or of a panel in the units of its axes
+  double x, y;  ///< position of the text's middle or end; on the page [px], or of a panel in the units of its axes
   TextRole role = TextRole::label;
   Align align = Align::centre;
   double right_px = 0, down_px = 0;  ///< shift [px]
-  bool boxed = false;                ///< on white
-  std::string colour = {};           ///< empty: that of the role
+  bool boxed = false;                ///< true: drawn on a white background
+  std::string colour = {};           ///< colour of the text; empty: that of the role
 };
 
 enum class LegendPlace { none, top_left, top_right, bottom_left, bottom_right, above, above_right, right, below };
@@ -91,7 +92,7 @@ enum class LegendPlace { none, top_left, top_right, bottom_left, bottom_right, a
 struct Legend {
   LegendPlace place = LegendPlace::none;
   double top_px = 46;       ///< upper end on the page if it is above the panel
-  bool horizontal = false;  ///< entries side by side
+  bool horizontal = false;  ///< true: entries side by side
 };
 
 /// Place on the page [px].
@@ -107,12 +108,12 @@ struct Panel {
   std::string title = {};
   Axis x = {}, y = {};
   std::optional<Map> map = {};
-  std::vector<Layer> layers = {};  ///< the first one is the lowest
-  std::vector<Label> labels = {};  ///< moved if they overlap or leave the page, where the ranges of the axes are given
+  std::vector<Layer> layers = {};  ///< layers, the lowest one first
+  std::vector<Label> labels = {};  ///< moved if they overlap or leave the page, provided the axes have ranges
   Legend legend = {};
   Border border = Border::full;
   Grid grid = Grid::none;
-  bool equal_scales = false;  ///< the same scale on both axes
+  bool equal_scales = false;  ///< true: the same scale on both axes
 };
 
 }  // namespace figures
@@ -129,6 +130,12 @@ struct Figure {
   void add_title(std::string text) {
     labels.push_back({std::move(text), width_px / 2.0, 26, figures::TextRole::title});
   }
+};
+
+/// A figure with the name of its file, or by which a reader chooses it.
+struct NamedFigure {
+  std::string name;
+  Figure figure;
 };
 
 /// Returns a colour for lines and bars, distinguishable with a colour vision deficiency (Okabe & Ito 2008).

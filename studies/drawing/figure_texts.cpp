@@ -25,7 +25,7 @@ constexpr std::array<short, 95> widths{318,  401, 460, 838, 636, 950, 780, 275, 
                                        603,  787, 695, 635, 611, 732, 684, 989, 685, 611, 685, 390, 337, 390, 838, 500,
                                        500,  613, 635, 550, 635, 615, 352, 635, 634, 278, 278, 579, 278, 974, 634, 612,
                                        635,  635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838};
-constexpr double other_width = 640;  ///< about that of a Greek letter
+constexpr double other_width = 640;  ///< width of other characters, about that of a Greek letter
 
 PlacedText place(Label label, FigureFont font) {
   label.x += label.right_px;
@@ -86,6 +86,25 @@ FigureFont font_of(Figure::Kind kind, std::string_view name) {
   return {};
 }
 
+std::string colour_of(TextRole role) {
+  std::string const start = ' ' + std::string(to_string(role)) + "_colour = '";
+  auto const found = embedded::figure_look.find(start);
+  GLADSTONE_ENSURES(found != std::string_view::npos);
+  return std::string(embedded::figure_look.substr(found + start.size(), 7));
+}
+
+std::vector<std::string> colours_of(figures::Palette palette) {
+  constexpr std::array<std::string_view, 3> starts{"\ndiverging = ", "\nsequential = ", "\ngrey = "};
+  auto const found = embedded::figure_look.find(starts[static_cast<std::size_t>(palette)]);
+  GLADSTONE_ENSURES(found != std::string_view::npos);
+  std::string_view const line =
+      embedded::figure_look.substr(found + 1, embedded::figure_look.find('\n', found + 1) - found);
+  std::vector<std::string> colours;
+  for (auto at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1))
+    colours.emplace_back(line.substr(at, 7));
+  return colours;
+}
+
 double text_width(std::string_view text, FigureFont const& font) {
   double sum = 0;
   for (char const c : text) {
@@ -133,7 +152,7 @@ std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const&
 }
 
 double legend_width(figures::Panel const& panel, Figure::Kind kind) {
-  constexpr double sample = 52;  // line, and the gaps beside it [px]
+  constexpr double sample = 52;  // width of the sample line and of the gaps on both sides of it [px]
   double longest = 0;
   for (figures::Layer const& layer : panel.layers) {
     longest = std::max(longest, text_width(layer.name, font_of(kind, "legend")));

@@ -20,6 +20,8 @@
 #include "studies/drawing/draw_figure.h"
 #include "studies/examples/demo_story.h"
 #include "studies/figures/agreement_figure.h"
+#include "studies/figures/comparison_figures.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/map_figures.h"
 
 namespace gladstone {
@@ -96,7 +98,7 @@ DemoInstant::Paper paper_numbers(Comparison const& comparison) {
     if (mask[i]) paper.sums.add(comparison.point, i);
   }
   auto const rms = [&](std::vector<Vec2d> const& one, std::vector<Vec2d> const& other) {
-    return summarize_errors(one, other, mask).rms_px;
+    return summarize_errors(one, other, mask)["rms_px"];
   };
   std::vector<Vec2d> const& measured = comparison.measured.displacement_px;
   paper.cone_minus_rays_px = rms(comparison.point.eq9_cone_px, comparison.point.displacement_px);

@@ -22,7 +22,7 @@ std::string digits(double px, int significant) {
   return fmt::format("{:.{}f}", px, std::max(0, decimals));
 }
 
-/// Returns the largest differences between traced and predicted agreement.
+/// Returns the largest difference of the correlation, and that of the rms ratio, between ray tracing and prediction.
 Agreement largest_miss(std::vector<DemoInstant> const& instants) {
   Agreement worst{};
   for (DemoInstant const& instant : instants) {

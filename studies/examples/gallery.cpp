@@ -10,10 +10,12 @@
 
 #include "analysis/errors/error_summary.h"
 #include "render/files/image_file.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/case_files.h"
 #include "studies/case/render_setup.h"
 #include "studies/case/shared_folder.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/map_panels.h"
 
 namespace gladstone {
@@ -74,7 +76,7 @@ std::string run_gallery(std::string const& folder, Backend const& device) {
     spdlog::info("{}: {}", picture.name, picture.title);
     std::string const place = (fs::path(folder) / picture.name).string();
     std::string const path = (fs::path(cases) / (std::string(picture.name) + ".toml")).string();
-    SetupRenderer setup(SetupDocument::from_file(path), path);
+    SetupRenderer setup(read_setup_document(path), path);
     setup.refuse_over_inputs(place);
     setup.render(*device.renderer, place);
     images.push_back(read_image(in_case(place, case_file::reference)));

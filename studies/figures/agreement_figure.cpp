@@ -16,7 +16,7 @@ struct AgreementPanel {
   char const* title;
   double Agreement::*value;
   LegendPlace legend;
-  double left, right;  ///< [px]
+  double left, right;  ///< left and right edge on the page [px]
 };
 constexpr AgreementPanel agreement_panels[] = {
     {"correlation of light rays and Eq. 9", &Agreement::correlation, LegendPlace::bottom_right, 62, 522},
@@ -44,7 +44,7 @@ Panel make_agreement_panel(AgreementPanel const& chosen, std::vector<AgreementSe
       rays.columns[1].push_back(y);
       rays.columns[2].push_back(y - error);
       rays.columns[3].push_back(y + error);
-      // above one curve and below the other
+      // labels are above one curve and below the other
       double const side = i == 0 ? -1 : 1;
       panel.labels.push_back(
           {std::to_string(point.nodes), x, y, TextRole::note, Align::centre, side * 15, side * 9, false, line.colour});

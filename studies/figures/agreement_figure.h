@@ -22,7 +22,7 @@ struct AgreementSeries {
     double size_over_cone = 0;
     Agreement value;
   };
-  std::vector<Prediction> prediction;  ///< by predicted_agreement(), in ascending order
+  std::vector<Prediction> prediction;  ///< curve by predicted_agreement(), in ascending order
 };
 
 /// Returns the ratios of structure size to cone diameter at which curves are predicted, over the range of the figure

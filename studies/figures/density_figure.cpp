@@ -29,12 +29,13 @@ bool has_finite(std::vector<double> const& values) {
 
 /// Line of nodes through the largest deviation from the reference density.
 struct DensityProfile {
-  bool is_column = false;                           ///< true: over y, false: over x
+  bool is_column = false;                           ///< true: profile over y; false: over x
   double at_mm = 0.0;                               ///< y of a row, x of a column [mm]
-  std::vector<double> place_mm;                     ///< [mm]
+  std::vector<double> place_mm;                     ///< positions along the line [mm]
   std::vector<double> density, low, high, truth;    ///< density, its interval of +- sigma, and truth [kg/m^3]
-  double largest_mm = 0.0, largest = not_a_number;  ///< place and density of the largest deviation
-  double largest_sigma = not_a_number;              ///< standard uncertainty there [kg/m^3]
+  double largest_mm = 0.0, largest = not_a_number;  ///< position and density of the largest deviation
+  double largest_sigma = not_a_number;              ///< standard uncertainty at the position of the largest deviation
+                                                    ///< [kg/m^3]
 };
 
 /// Returns the index of the node with the largest deviation; 0 if no node has a density.

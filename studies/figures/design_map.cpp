@@ -14,7 +14,7 @@ namespace {
 
 using namespace figures;
 using unit::mm;
-constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // relative to Z_A
+constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // Z_D of the lines in the map, relative to Z_A
 
 std::vector<double> in_mm(std::vector<double> lengths) {
   for (double& length : lengths) length /= mm;
@@ -151,16 +151,15 @@ Figure make_design_front(Recommendation const& answer, Objective objective) {
                                              "random error [px]", "Z_A + Z_D [mm]"};
   constexpr std::array<double, 4> units{1, mm, 1, mm};
   auto const index = static_cast<std::size_t>(objective);
-  BoundKey const key = bound_key(answer.front_bound);
   Layer front{.columns = {{}, {}}, .colour = house_colour(0), .name = "best of all combinations", .marker = 1};
   for (FrontPoint const& point : answer.front) {
-    front.columns[0].push_back(point.limit / key.unit);
+    front.columns[0].push_back(point.limit / answer.front_bound->unit);
     front.columns[1].push_back(point.objective / units[index]);
   }
   Figure figure{720, 520};
   figure.add_title("Trade-off between the requirements");
   figure.panels.push_back(
-      {.box = {84, 696, 48, 460}, .x = {key.path}, .y = {names[index]}, .layers = {std::move(front)}});
+      {.box = {84, 696, 48, 460}, .x = {answer.front_bound->name}, .y = {names[index]}, .layers = {std::move(front)}});
   figure.panels.back().legend.place = LegendPlace::top_right;
   figure.panels.back().grid = Grid::both;
   return figure;

@@ -33,11 +33,12 @@ struct DesignCurve {
 /// Returns curves for the standard f-numbers from f/2.8 to f/32, with Z_D from 0.05 to 4 times Z_A.
 std::vector<DesignCurve> design_curves(DesignPoint<double> const& bench);
 
-/// These curves, the setup as a point, the limit by the light cone alone, and what is excluded as shaded areas.
+/// Draws the design map: the curves of design_curves(), the setup as a point, the limit by the light cone alone, and
+/// the excluded designs as shaded areas.
 /// @param question  requirements and limits; null: only the limits of every set-up
 Figure make_design_map(DesignPoint<double> const& bench, DesignQuestion const* question);
 
-/// The best objective against the limit of a requirement.
+/// Draws the trade-off of an answer: the best objective against the limit of a requirement.
 Figure make_design_front(Recommendation const& answer, Objective objective);
 
 }  // namespace gladstone

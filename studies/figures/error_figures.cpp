@@ -71,7 +71,7 @@ BinnedErrors bin_errors(std::vector<double> const& gradient, std::vector<Vec2d> 
     if (std::isfinite(gradient[i]) && is_finite(error_px[i])) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gradient[a] < gradient[b]; });
-  // with at least 20 vectors in each bin if there are enough
+  // Use bins with at least 20 vectors each if there are enough vectors.
   std::size_t const bins = std::clamp<std::size_t>(order.size() / 20, 1, 15);
   BinnedErrors binned;
   for (std::size_t bin = 0; bin < bins; ++bin) {
@@ -110,8 +110,8 @@ Figure make_error_histograms(std::string const& title, std::vector<ErrorSeries> 
           summarize_errors(series[i].error_px, std::vector<Vec2d>(series[i].error_px.size()), {});
       std::string const label = errors.empty() ? fmt::format("{}: no vectors", series[i].name)
                                                : fmt::format("{}: bias {:+.4f}, random {:.4f} px", series[i].name,
-                                                             is_u ? summary.bias_u_px : summary.bias_v_px,
-                                                             is_u ? summary.random_u_px : summary.random_v_px);
+                                                             is_u ? summary["bias_u_px"] : summary["bias_v_px"],
+                                                             is_u ? summary["random_u_px"] : summary["random_v_px"]);
       std::vector<std::vector<double>> const outline = density_of(errors, reach, 81);
       std::vector<double> const zero(outline[0].size(), 0.0);
       panel.layers.push_back({Layer::Kind::band, {outline[0], zero, outline[1]}, house_colour(i)});
@@ -219,6 +219,28 @@ Figure make_budget_bars(std::string const& title, ErrorBudget const& budget) {
   panel.layers.push_back({Layer::Kind::guides, {{static_cast<double>(count) - 1.5}}, "#909090", "", 1, Dash::dashed});
   figure.panels.push_back(std::move(panel));
   return figure;
+}
+
+Figure make_reliability_figure(std::vector<UncertaintyBin> const& bins) {
+  Layer points{Layer::Kind::points, {{}, {}}, house_colour(0), "bins of equal count"};
+  points.marker = 1;
+  double largest = 0;
+  for (UncertaintyBin const& bin : bins) {
+    points.columns[0].push_back(bin.rms_sigma_px);
+    points.columns[1].push_back(bin.rms_error_px);
+    points.notes.push_back(fmt::format("uncertainty {:.4g} px, error {:.4g} px\n{} components", bin.rms_sigma_px,
+                                       bin.rms_error_px, bin.count));
+    largest = std::max({largest, bin.rms_sigma_px, bin.rms_error_px});
+  }
+  double const end = largest > 0 ? 1.05 * largest : 1;
+  Layer equal{.columns = {{0, end}, {0, end}}, .colour = "#808080", .name = "error equal to the uncertainty"};
+  equal.width = 1.5;
+  equal.dash = Dash::dashed;
+  Panel panel{.box = {92, 790, 30, 420}, .layers = {std::move(equal), std::move(points)}, .grid = Grid::both};
+  panel.x = {"estimated uncertainty, rms of the bin [px]", 0, end};
+  panel.y = {"error, rms of the bin [px]", 0, end};
+  panel.legend.place = LegendPlace::top_left;
+  return {820, 480, Figure::Kind::chart, {}, {std::move(panel)}};
 }
 
 }  // namespace gladstone

@@ -5,6 +5,7 @@
 
 #include "analysis/errors/error_budget.h"
 #include "analysis/errors/error_summary.h"
+#include "analysis/errors/uncertainty_quality.h"
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
 #include "studies/drawing/figure.h"
@@ -35,5 +36,8 @@ std::vector<double> local_gradient(DisplacementField const& field);
 
 /// Error budget: bias and random error of every known term in both components, and its rms.
 Figure make_budget_bars(std::string const& title, ErrorBudget const& budget);
+
+/// rms error against estimated uncertainty in bins of equal count, with the line on which they are equal.
+Figure make_reliability_figure(std::vector<UncertaintyBin> const& bins);
 
 }  // namespace gladstone

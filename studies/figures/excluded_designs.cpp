@@ -26,9 +26,8 @@ std::vector<MapLimit> limits_of_map(DesignPoint<double> const& bench, DesignQues
     all.push_back({std::move(name), [limit](DesignPoint<double> const& one) { return excess(limit, one) > 0; }});
   };
   if (question) {
-    for (Limit const& limit : required_limits(question->requirements)) {
-      BoundKey const key = bound_key(limit.bound);
-      add(fmt::format("{} = {:.4g}", key.path, limit.value / key.unit), limit);
+    for (Limit const& limit : question->requirements.limits) {
+      add(fmt::format("{} = {:.4g}", limit.bound->name, limit.value / limit.bound->unit), limit);
     }
     for (FreeChoice const& free : question->free) {
       if (!free.values.empty() || (free.choice != Choice::z_d && free.choice != Choice::f_number)) continue;
@@ -40,7 +39,7 @@ std::vector<MapLimit> limits_of_map(DesignPoint<double> const& bench, DesignQues
                      }});
     }
   }
-  for (Limit const& limit : feasibility_limits(*bench.given)) add(bound_name(limit.bound), limit);
+  for (Limit const& limit : feasibility_limits(*bench.given)) add(limit.bound->name, limit);
   return all;
 }
 

@@ -75,8 +75,8 @@ std::vector<Layer> make_layers(Drawing const& d) {
 /// Labels of a layout.
 struct LayoutWords {
   std::string title;
-  std::string seen;    ///< in the plane of the dots or of the sheet
-  std::string medium;  ///< empty: no label
+  std::string seen;    ///< field of view in the plane of the dots or of the sheet
+  std::string medium;  ///< name of the medium; empty: no label
 };
 
 /// Panel with stretched heights, to which distances and names are added.
@@ -97,7 +97,7 @@ class StretchedPanel {
     panel_.labels.back().boxed = true;
   }
 
-  /// Adds an arrow between two places; its name, if any, is on it.
+  /// Adds an arrow between two positions, labelled with its name if there is one.
   void add_distance(double from, double to, double at, std::string const& name) {
     panel_.layers.push_back(
         {Layer::Kind::spans, {{from / mm}, {height(at)}, {(to - from) / mm}, {0}}, "#606060", "", 1});
@@ -148,7 +148,7 @@ Figure make_layout(OpticalLayout const& l, LayoutWords const& words) {
   panel.add_name(fmt::format("z_i = {:.5g} mm", (l.sensor_z - l.lens_z) / mm), z_high, 0.10, Align::right);
   panel.add_name(words.seen, l.dots_z + (dots ? 0.03 : 0.08) * length, dots ? 0.95 : 0.82);
   if (!words.medium.empty()) panel.add_name(words.medium, dots ? 0 : 0.08 * length, 0.89);
-  // beside the stop, whose bars reach up to the label's height if the pupil is the tallest part
+  // place the label next to the stop, whose bars reach up to the label if the pupil is the tallest part
   panel.add_name(fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z - 0.02 * length, 0.83, Align::right);
   panel.add_name(fmt::format("sensor {:.4g} mm", 2 * l.sensor_half / mm), l.sensor_z, 0.20);
   figure.panels = {std::move(scaled), std::move(panel).panel()};

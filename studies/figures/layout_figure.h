@@ -16,9 +16,11 @@ struct OpticalLayout {
   double pupil_radius;
   /// half heights of the sensor and of its images in the medium and the dots' plane
   double sensor_half, medium_half, dots_half;
-  double cone_radius;                                      ///< in the medium's mid-plane, for the dot on the axis
-  double sheet_half_thickness = 0, sheet_half_height = 0;  ///< of a laser sheet; 0 for BOS
-  std::vector<double> planes = {};                         ///< Z of the planes of a calibration
+  double cone_radius;  ///< radius in the medium's mid-plane, for the dot on the
+                       ///< axis
+  /// half thickness and half height of the laser sheet; 0 for BOS
+  double sheet_half_thickness = 0, sheet_half_height = 0;
+  std::vector<double> planes = {};  ///< Z of the planes of a calibration
 };
 
 OpticalLayout make_optical_layout(DesignPoint<double> const& bench);
@@ -31,12 +33,12 @@ Figure make_layout_figure(DesignPoint<double> const& bench);
 /// the point of the axis at the distance Z_A) towards the camera. A laser sheet is across the axis, whatever its angle.
 OpticalLayout make_camera_layout(Setup const& setup);
 
-/// The layout of make_camera_layout(), for cameras with a pose, prescription or other optical elements, and for
-/// calibrations.
+/// Returns the layout of make_camera_layout() as a figure, for cameras with a pose, prescription or other optical
+/// elements, and for calibrations.
 /// @throws DataError if the image distance or the view is infinite
 Figure make_camera_layout_figure(Setup const& setup);
 
-/// The layout of make_camera_layout() for a PIV setup with the laser sheet in the plane Z = 0.
+/// Draws the layout of make_camera_layout() for a PIV setup, with the laser sheet in the plane Z = 0.
 /// @pre setup.piv
 Figure make_piv_layout_figure(Setup const& setup);
 

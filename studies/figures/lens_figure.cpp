@@ -123,7 +123,7 @@ std::vector<std::vector<Vec3d>> drawn_rays(Lens const& lens, ParaxialLens const&
   RayOrigin const origin = field_origin(lens, paraxial, angle);
   auto const disc = find_apparent_pupil(lens, origin);
   if (!disc) return rays;
-  double foremost = 0;  // behind a mirror, surfaces may be in front of the first one
+  double foremost = 0;  // foremost vertex: behind a mirror, surfaces may be in front of the first one
   for (Pose<double> const& pose : lens.poses) foremost = std::min(foremost, pose.origin.z);
   double const begin = std::max(foremost - 0.25 * total, origin.at_infinity ? -HUGE_VAL : origin.place.z);
   for (double const y : {-0.99, -0.5, 0.0, 0.5, 0.99}) {

@@ -32,6 +32,33 @@ ColourRange component_range(Image<double> const& component, Image<double> const&
 
 }  // namespace
 
+MapAxes lattice_axes(DisplacementField const& field) {
+  GLADSTONE_EXPECTS(field.columns > 1 && field.rows > 1);
+  MapAxes axes;
+  axes.x_first = field.position_px.front().x;
+  axes.x_step = field.position_px[1].x - axes.x_first;
+  axes.y_first = field.position_px.front().y;
+  axes.y_step = field.position_px[static_cast<std::size_t>(field.columns)].y - axes.y_first;
+  return axes;
+}
+
+Image<double> component_map(DisplacementField const& lattice, std::vector<Vec2d> const& values, double Vec2d::*part) {
+  Image<double> map(lattice.columns, lattice.rows);
+  std::transform(values.begin(), values.end(), map.begin(), [part](Vec2d const& value) { return value.*part; });
+  return map;
+}
+
+Figure make_vector_maps(DisplacementField const& lattice, std::vector<Vec2d> const& values, std::string const& unit) {
+  Image<double> u = component_map(lattice, values, &Vec2d::x), v = component_map(lattice, values, &Vec2d::y);
+  Image<double> magnitude(lattice.columns, lattice.rows);
+  std::transform(values.begin(), values.end(), magnitude.begin(), [](Vec2d const& value) { return length(value); });
+  MapFigure figure{.columns = 3, .axes = lattice_axes(lattice)};
+  figure.panels = {{fmt::format("magnitude [{}]", unit), std::move(magnitude), ColourScale::magnitude},
+                   {fmt::format("u [{}]", unit), std::move(u)},
+                   {fmt::format("v [{}]", unit), std::move(v)}};
+  return make_map_figure(figure);
+}
+
 Figure make_displacement_maps(std::string const& title, MapAxes const& axes, std::vector<NamedMaps> const& sources) {
   GLADSTONE_EXPECTS(!sources.empty());
   MapFigure figure;

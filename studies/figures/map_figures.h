@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/image.h"
 #include "studies/figures/map_panels.h"
 
@@ -14,6 +15,16 @@ struct NamedMaps {
   Image<double> u_px;
   Image<double> v_px;
 };
+
+/// Returns the coordinates of vectors on a lattice.
+/// @pre field.columns and rows exceed 1
+MapAxes lattice_axes(DisplacementField const& field);
+
+/// Returns a component of values at the vectors of a lattice as a map.
+Image<double> component_map(DisplacementField const& lattice, std::vector<Vec2d> const& values, double Vec2d::*part);
+
+/// Magnitude and both components of values at the vectors of a lattice, side by side.
+Figure make_vector_maps(DisplacementField const& lattice, std::vector<Vec2d> const& values, std::string const& unit);
 
 /// One column per source with u above v, with the colour range of the first source (larger values are clipped),
 /// then the differences from the first source, with one range per source.

@@ -145,7 +145,7 @@ Axis node_axis(double first, double step, int nodes, double length_px, double ap
   return axis;
 }
 
-/// Returns a panel without its place and the labels of its axes.
+/// Returns a panel without its position and the labels of its axes.
 Panel make_map_panel(MapPanel const& from, MapAxes const& axes, MapLayout const& layout, ColourRange range) {
   Panel panel{.title = from.title};
   panel.x = node_axis(axes.x_first, axes.x_step, from.map.columns(), layout.map_width, 42);

@@ -28,12 +28,13 @@ enum class ColourScale {
 
 /// One map with title and colour bar. NaN is grey; values outside the range are clipped to its end colours.
 struct MapPanel {
-  std::string title;  ///< with the unit, e.g. "u, ray truth [px]"
-  Image<double> map;  ///< empty: no panel is drawn at this position
+  std::string title;  ///< title with the unit, e.g. "u, ray truth [px]"
+  Image<double> map;  ///< values of the map; empty: no panel is drawn at this position
   ColourScale scale = ColourScale::diverging;
   /// panels with the same name share a range; empty: separate range
   std::string range_group = {};
-  double lower = std::numeric_limits<double>::quiet_NaN();  ///< NaN: the 0.25 and 99.75 % quantiles of the values
+  double lower = std::numeric_limits<double>::quiet_NaN();  ///< ends of the colour scale; NaN: the 0.25 and 99.75 %
+                                                            ///< quantiles of the values
   double upper = std::numeric_limits<double>::quiet_NaN();
 };
 

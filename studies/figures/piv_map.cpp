@@ -13,7 +13,7 @@ namespace {
 using namespace figures;
 
 constexpr std::array<double, 10> piv_f_numbers{1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32};
-constexpr double most_image_px = 4;  // F14
+constexpr double most_image_px = 4;  // maximum diameter of row F14 of the design sheet
 
 }  // namespace
 

@@ -20,8 +20,8 @@ struct PivStop {
 /// @throws DataError as expected_particles()
 std::vector<PivStop> piv_stops(Setup setup);
 
-/// These quantities against the f-number, with the image diameters suitable for correlation, the full well and
-/// the setup's f-number.
+/// Draws the quantities of PivStop against the f-number, with the image diameters suitable for correlation, the full
+/// well and the setup's f-number.
 Figure make_piv_map(Setup const& setup);
 
 }  // namespace gladstone

@@ -16,7 +16,7 @@ struct FigureAxis {
   bool numeric = true;  ///< numeric scale; else categories
   /// logarithmic scale: the numbers span more than a decade, or have a constant ratio
   bool logarithmic = false;
-  bool binned = false;                ///< positions represent bins of values
+  bool binned = false;                ///< true: positions represent bins of values
   bool labelled = false;              ///< numeric scale with named positions
   std::vector<double> position;       ///< number (mean of a bin), or 0, 1, ... for categories
   std::vector<std::string> label;     ///< label of each position

@@ -164,7 +164,7 @@ class BudgetFigure {
     return name;
   }
 
-  static constexpr double height = 250.0;  ///< of a panel [px]
+  static constexpr double height = 250.0;  ///< height of a panel [px]
   StudyCells const& cells_;
   StudyCells const* points_;
   std::size_t axis_index_;
@@ -176,7 +176,7 @@ class BudgetFigure {
   bool only_repeats_differ_ = true;
   std::size_t repeats_ = 0;                                          ///< largest number of cases of a value
   double low_ = std::numeric_limits<double>::infinity(), high_ = 0;  ///< range of the values [px]
-  double width_ = 0;                                                 ///< of the panels [px]
+  double width_ = 0;                                                 ///< width of the panels [px]
 };
 
 }  // namespace

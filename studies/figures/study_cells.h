@@ -12,14 +12,14 @@ namespace gladstone {
 inline constexpr std::size_t max_positions = 12;
 
 /// Returns the number of positions of sampled axes in maps, for an average of two points per cell: sqrt(points / 2), at
-/// most 12; for fewer than 8 points, which do not suffice for a map, the general maximum.
+/// most 12; for fewer than 8 points, which do not suffice for a map, max_positions.
 std::size_t sampled_places_in_maps(std::size_t points);
 
 /// Finished cases of a study, sorted by the positions on its axes; data source of all its figures.
 class StudyCells {
  public:
-  /// @param sampled_places  maximum number of positions on a numeric axis with a different value in every point of the
-  ///                        study, as sampled by "sobol"
+  /// @param sampled_places  maximum number of positions on a numeric axis that "sobol" sampled, which has a different
+  /// value in every point of the study
   explicit StudyCells(StudyTable const& table, std::size_t sampled_places = max_positions);
 
   /// Returns the axes with more than one value.

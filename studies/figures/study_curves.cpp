@@ -17,7 +17,7 @@ struct Curve {
   std::string name;
   std::string colour;
   bool dashed = false;
-  std::vector<Scatter> points;  ///< one per position of the axis
+  std::vector<Scatter> points;  ///< values of the curve, one per position of the axis
 };
 
 struct CurvePanel {

@@ -13,11 +13,11 @@ std::optional<Figure> make_error_curves(StudyCells const& cells, std::size_t axi
 std::optional<Figure> make_error_map(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis);
 /// @param points  averages of a study with repeats (study_points()), which separate estimator and pattern; else null
 std::optional<Figure> make_budget(StudyCells const& cells, std::size_t axis, StudyCells const* points);
-/// Errors common to all repeats and those that differ between them.
+/// Returns a figure of the errors that are common to all repeats, and of the scatter between repeats.
 /// @param points  averages of a study with repeats
 std::optional<Figure> make_repeats(StudyCells const& points, std::size_t axis);
 
-/// Common parts of these figures.
+/// Common parts of the figures of a study.
 namespace study_drawing {
 
 /// Adds the title and a caption of at most two lines.

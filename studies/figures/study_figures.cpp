@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "render/base/parallel.h"
 #include "studies/drawing/draw_figure.h"
@@ -120,14 +121,41 @@ std::string file_part(std::string key) {
   return key;
 }
 
+/// Cases of a study and, for repeats, the averages of its points.
+struct CasesAndPoints {
+  explicit CasesAndPoints(StudyTable const& table)
+      : cells(table),
+        point_table(table.repeats() > 1 ? std::optional(study_points(table)) : std::nullopt),
+        points(point_table ? std::optional<StudyCells>(*point_table) : std::nullopt) {}
+  CasesAndPoints(CasesAndPoints const&) = delete;
+
+  std::optional<Figure> make_budget(std::size_t axis) const {
+    return gladstone::make_budget(cells, axis, points ? &*points : nullptr);
+  }
+
+  StudyCells cells;
+  std::optional<StudyTable> point_table;
+  std::optional<StudyCells> points;
+};
+
 }  // namespace
+
+std::vector<NamedFigure> make_budget_figures(StudyTable const& table) {
+  CasesAndPoints const study(table);
+  std::vector<std::size_t> axes = study.cells.varied();
+  if (axes.empty() && !table.axes.empty()) axes = {0};
+  std::vector<NamedFigure> figures;
+  for (std::size_t const axis : axes) {
+    if (std::optional<Figure> figure = study.make_budget(axis))
+      figures.push_back({study.cells.axis(axis).title, *std::move(figure)});
+  }
+  return figures;
+}
 
 std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table,
                                     std::vector<std::string> const& formats) {
-  StudyCells const cells(table), map_cells(table, sampled_places_in_maps(table.points.size()));
-  bool const repeated = table.repeats() > 1;
-  StudyTable const point_table = repeated ? study_points(table) : StudyTable{};
-  StudyCells const points(point_table);
+  CasesAndPoints const study(table);
+  StudyCells const &cells = study.cells, map_cells(table, sampled_places_in_maps(table.points.size()));
   std::vector<Figure> figures;
   std::vector<std::string> paths;  // one per figure and format
   auto const add = [&](std::optional<Figure> figure, std::string const& name) {
@@ -139,8 +167,8 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
   for (std::size_t i = 0; i < varied.size(); ++i) {
     std::string const name = file_part(cells.key(varied[i]));
     add(make_error_curves(cells, varied[i]), "error_against_" + name);
-    add(make_budget(cells, varied[i], repeated ? &points : nullptr), "budget_" + name);
-    if (repeated) add(make_repeats(points, varied[i]), "repeats_" + name);
+    add(study.make_budget(varied[i]), "budget_" + name);
+    if (study.points) add(make_repeats(*study.points, varied[i]), "repeats_" + name);
     for (std::size_t j = i + 1; j < varied.size(); ++j) {
       add(make_error_map(map_cells, varied[j], varied[i]),
           fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));

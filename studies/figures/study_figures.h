@@ -3,9 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "studies/drawing/figure.h"
 #include "studies/sweep/study_table.h"
 
 namespace gladstone {
+
+/// Returns the error budget over every axis with several values, by the titles of the axes; without such an axis, that
+/// over the first axis. Empty if the budget is unknown.
+std::vector<NamedFigure> make_budget_figures(StudyTable const& table);
 
 /// Draws the figures of a study, each in every format:
 ///

@@ -21,7 +21,7 @@ struct ErrorMap {
   Image<double> errors = {};
 };
 
-/// Returns the axis of cells, which have equal sizes on any scale.
+/// Returns an axis of equally wide cells, one for each position, even if the positions have a logarithmic scale.
 Axis make_cell_axis(FigureAxis const& axis) {
   std::vector<double> indices(axis.size());
   std::iota(indices.begin(), indices.end(), 0.0);

@@ -5,6 +5,7 @@
 
 #include "render/base/units.h"
 #include "render/planning.h"
+#include "render/render.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/scene.h"
 #include "render/sensor/diffraction_spot.h"
@@ -28,9 +29,9 @@ GroundTruth truth_of(Setup const& setup, std::vector<Vec2d> const& points, std::
   scene.camera = build_camera(setup);
   scene.dots.centre = points;
   scene.medium = build_medium(setup.medium);
-  scene = with_chosen_step(std::move(scene));
-  scene.rays_per_dot = rays;
-  return renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::yes).truth;
+  RenderPlan plan = plan_step(scene);
+  plan.rays = rays;
+  return render(scene, plan, renderer, RenderImages::no, RenderTheory::yes).truth;
 }
 
 /// Traces an axial point with 2^15 rays through a density wave along X with a peak gradient of 10 kg/m^4 on the axis.

@@ -65,7 +65,8 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
   }
   ErrorSummary const error =
       summarize_errors(all.measured.displacement_px, all.recorded().displacement_px, all.mask, all.vectors_in_file());
-  double const u = std::hypot(error.bias_u_px, error.random_u_px), v = std::hypot(error.bias_v_px, error.random_v_px);
+  double const u = std::hypot(error["bias_u_px"], error["random_u_px"]),
+               v = std::hypot(error["bias_v_px"], error["random_v_px"]);
   statements.push_back(
       fmt::format("The combined standard uncertainty is {:.3g} px of the component u and {:.3g} px of v, of type B: "
                   "the rms error against {}, due to estimator and noise, over the {} vectors of this simulated "
@@ -85,13 +86,14 @@ std::vector<std::string> summarize_findings(CaseView const& view) {
   };
   ErrorSummary const truth = rms(all.point.displacement_px);
   ErrorSummary const theory = rms(kind.references.front().of(all));
-  findings.push_back(fmt::format(
-      "The rms error of the measurement is {:.3g} px against ray truth and {:.3g} px against {}; {} of {} "
-      "vectors count, {:.2g} % of them with gross errors.",
-      truth.rms_px, theory.rms_px, kind.theory, truth.count, all.vectors_in_file(), 100 * truth.gross_fraction));
+  findings.push_back(
+      fmt::format("The rms error of the measurement is {:.3g} px against ray truth and {:.3g} px against {}; {} of {} "
+                  "vectors count, {:.2g} % of them with gross errors.",
+                  truth["rms_px"], theory["rms_px"], kind.theory, truth.count(), all.vectors_in_file(),
+                  100 * truth["gross_fraction"]));
   if (std::string const cause = largest_term(all.shown_budget()); !cause.empty()) findings.push_back(cause);
   findings.push_back(uncertainty_statements(view).front());
-  for (std::string const& warning : all.warnings) findings.push_back("Warning: " + warning + '.');
+  for (std::string const& warning : to_strings(all.warnings)) findings.push_back("Warning: " + warning + '.');
   return findings;
 }
 

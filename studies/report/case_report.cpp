@@ -12,6 +12,7 @@
 #include "studies/case/case_files.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/comparison_kind.h"
+#include "studies/figures/comparison_figures.h"
 #include "studies/report/case_view.h"
 #include "studies/report/density_section.h"
 #include "studies/report/layout_view.h"
@@ -28,33 +29,35 @@ constexpr int most_frame_px = 1024;  ///< maximum width and height of an image i
 /// Adds maps of the displacements along the budget's chain and of the contribution of each cause.
 void add_maps(CaseView& view) {
   Comparison const& all = view.comparison;
-  std::vector<Vec2d> const& measured = all.measured.displacement_px;
   std::vector<Vec2d> const& truth = all.point.displacement_px;
-  view.add_field("measured", "measurement", measured);
-  view.add_field("truth", "ray truth", truth);
+  view.add_map("measurement", all.measured.displacement_px);
+  view.add_map("ray truth", truth);
   ComparisonKind const& kind = comparison_kind(all);
-  for (ReferenceDisplacement const& one : kind.references) view.add_field(one.key, one.name, one.of(all));
+  for (ReferenceDisplacement const& one : kind.references) view.add_map(one.name, one.of(all));
   bool const estimated =
       std::any_of(all.measured.sigma_px.begin(), all.measured.sigma_px.end(),
                   [](Vec2d const& sigma) { return std::isfinite(sigma.x) || std::isfinite(sigma.y); });
-  if (estimated) view.add_field("sigma", "estimated uncertainty", all.measured.sigma_px);
-  view.add_error("error_truth", "against ray truth", truth);
-  ReferenceDisplacement const& theory = kind.references.front();
-  view.add_error(std::string("error_") + theory.key, theory.against, theory.of(all));
-  view.add_error("error_recorded", std::string("against ") + all.recorded_name(), all.recorded().displacement_px);
-  for (BudgetStage const& cause : budget_differences(all)) {
-    view.add_field(cause.name, "cause: " + cause.name, cause.displacement_px);
-  }
+  if (estimated) view.add_map("estimated uncertainty", all.measured.sigma_px);
+  view.add_error("against ray truth", truth);
+  view.add_error(kind.references.front().against, kind.references.front().of(all));
+  view.add_error(std::string("against ") + all.recorded_name(), all.recorded().displacement_px);
+  for (BudgetStage const& cause : budget_differences(all)) view.add_map("cause: " + cause.name, cause.displacement_px);
 }
 
-/// Returns the rms error in bins of equal count of the estimated uncertainty.
-nlohmann::json reliability_of(Comparison const& all) {
-  nlohmann::json bins = nlohmann::json::array();
-  if (all.measured.sigma_px.empty()) return bins;
-  for (UncertaintyBin const& bin :
-       uncertainty_bins(all.measured.displacement_px, all.recorded().displacement_px, all.measured.sigma_px, all.mask))
-    bins.push_back({{"sigma", bin.rms_sigma_px}, {"error", bin.rms_error_px}, {"n", bin.count}});
-  return bins;
+/// Returns the chart of rms errors in bins of equal count of the estimated uncertainty; nullopt without bins.
+std::optional<Chart> reliability_chart(Comparison const& all) {
+  if (all.measured.sigma_px.empty()) return std::nullopt;
+  std::vector<UncertaintyBin> const bins =
+      uncertainty_bins(all.measured.displacement_px, all.recorded().displacement_px, all.measured.sigma_px, all.mask);
+  if (bins.empty()) return std::nullopt;
+  return Chart{"reliability",
+               "Does the estimated uncertainty describe the error?",
+               fmt::format("In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and "
+                           "the rms error against "
+                           "{} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",
+                           bins.size(), bins.front().rms_sigma_px, bins.back().rms_sigma_px, all.recorded_name(),
+                           bins.front().rms_error_px, bins.back().rms_error_px),
+               {{"", make_reliability_figure(bins)}}};
 }
 
 TextTable errors_table(CaseView const& view) {
@@ -138,41 +141,26 @@ std::optional<Reconstruction> reconstruct_compared(ReportOptions const& options,
   return reconstruct_case(options.source, density, device, {compared.setup.get(), &compared});
 }
 
-/// Adds the maps of displacements and errors, if the vectors are on a grid.
-void add_map_section(ReportPage& page, CaseView const& view) {
-  DisplacementField const& measured = view.comparison.measured;
-  if (measured.columns <= 1 || measured.rows <= 1) return;
-  page.data["fields"] = view.fields;
-  page.data["grid"] = {{"columns", measured.columns},
-                       {"rows", measured.rows},
-                       {"x", component_json(measured.position_px, &Vec2d::x)},
-                       {"y", component_json(measured.position_px, &Vec2d::y)}};
-  page.sections.push_back(
-      {"Maps", {Chart{"field", "Displacement, errors, and the contribution of each cause", page.findings.front()}}});
-}
-
 /// Adds the errors, their causes and the estimated uncertainty.
 void add_error_sections(ReportPage& page, CaseView const& view) {
   Comparison const& all = view.comparison;
-  page.sections.push_back(
-      {"Errors", {Chart{"histogram", "Distribution of the error", page.findings.front()}, errors_table(view)}});
+  std::vector<NamedFigure> figures = make_comparison_figures(all);
+  auto const take = [&figures](std::string_view name) {
+    return std::find_if(figures.begin(), figures.end(), [name](auto const& one) { return one.name == name; })->figure;
+  };
+  Chart histograms{
+      "histogram", "Distribution of the error", page.findings.front(), {{"all", take("error_histograms")}}};
+  for (ErrorSeries const& one : view.errors)
+    histograms.figures.push_back({one.name, make_error_histograms("Measurement error " + one.name, {one})});
+  page.sections.push_back({"Errors", {std::move(histograms), errors_table(view)}});
   page.sections.push_back(
       {"Causes of error",
-       {Chart{"budget", "rms of every cause", largest_term(all.shown_budget())},
+       {budget_chart("Error of every cause", take("error_budget"), all.shown_budget()),
         budget_table("The error budget [px]; the terms correlate, so that their squares do not add up",
                      all.shown_budget()),
         Paragraph{explain_budget(all)}}});
   ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
-  if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
-    uncertainty.blocks.emplace_back(Chart{
-        "reliability", "Does the estimated uncertainty describe the error?",
-        fmt::format(
-            "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "
-            "against {} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",
-            bins.size(), bins.front()["sigma"].get<double>(), bins.back()["sigma"].get<double>(), all.recorded_name(),
-            bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
-    page.data["reliability"] = std::move(bins);
-  }
+  if (std::optional<Chart> chart = reliability_chart(all)) uncertainty.blocks.emplace_back(*std::move(chart));
   page.sections.push_back(std::move(uncertainty));
 }
 
@@ -185,20 +173,8 @@ std::string case_name(std::string const& folder) {
 
 }  // namespace
 
-nlohmann::json budget_json(ErrorBudget const& budget) {
-  nlohmann::json json = nlohmann::json::array();
-  auto const add = [&](BudgetTerm const& term) {
-    if (!term.known()) return;
-    json.push_back({{"name", term.name},
-                    {"rms", term.rms_px},
-                    {"bias_u", term.bias_u_px},
-                    {"bias_v", term.bias_v_px},
-                    {"random_u", term.random_u_px},
-                    {"random_v", term.random_v_px}});
-  };
-  for (BudgetTerm const& term : budget.terms) add(term);
-  add(budget.total);
-  return json;
+Chart budget_chart(std::string const& title, Figure figure, ErrorBudget const& budget) {
+  return {"budget", title, largest_term(budget), {{"", std::move(figure)}}};
 }
 
 TextTable budget_table(std::string const& title, ErrorBudget const& budget) {
@@ -250,11 +226,13 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   if (mistaken || !all.complete) {
     page.doubtful.push_back(options.vectors.empty() ? in_case(options.source, case_file::vectors) : options.vectors);
   }
-  page.data = {{"errors", view.errors}, {"budget", budget_json(all.shown_budget())}};
   std::optional<LayoutView> const bench = layout_view(all.setup->copy());
   if (bench) page.sections.push_back(layout_section(*bench, "the case"));
   page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
-  add_map_section(page, view);
+  if (!view.maps.empty())
+    page.sections.push_back({"Maps",
+                             {Chart{"field", "Displacement, errors, and the contribution of each cause",
+                                    page.findings.front(), std::move(view.maps)}}});
   add_error_sections(page, view);
   std::vector<std::string> const commands = commands_of(options);
   std::optional<Reconstruction> const density = reconstruct_compared(options, all, device);

@@ -1,65 +1,48 @@
 #pragma once
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "studies/compare/comparison_kind.h"
+#include "studies/figures/error_figures.h"
+#include "studies/figures/map_figures.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {
 
-/// Returns one component of the displacements as a map of the report: integer multiples of 1e-6 px, null if unknown.
-inline nlohmann::json component_json(std::vector<Vec2d> const& values, double Vec2d::*component) {
-  nlohmann::json json = nlohmann::json::array();
-  for (Vec2d const& value : values) {
-    double const number = value.*component;
-    json.push_back(std::isfinite(number) ? nlohmann::json(std::round(number * 1e6) * 1e-6) : nlohmann::json(nullptr));
-  }
-  return json;
-}
-
-/// A comparison with the maps of its report.
+/// A comparison with the maps and the error series of its report.
 struct CaseView {
   Comparison comparison;
-  nlohmann::json fields = nlohmann::json::array();
-  nlohmann::json errors = nlohmann::json::array();
+  std::vector<NamedFigure> maps;  ///< empty for vectors that are not on a grid
+  std::vector<ErrorSeries> errors;
 
   explicit CaseView(Comparison compared) : comparison(std::move(compared)) {}
 
-  void add_field(std::string const& name, std::string const& title, std::vector<Vec2d> const& values) {
-    if (values.empty()) return;
-    fields.push_back({{"name", name},
-                      {"title", title},
-                      {"u", component_json(values, &Vec2d::x)},
-                      {"v", component_json(values, &Vec2d::y)}});
+  /// Adds maps of values to 1e-6 px, far below the resolution of any measurement.
+  void add_map(std::string name, std::vector<Vec2d> values) {
+    DisplacementField const& lattice = comparison.measured;
+    if (values.empty() || lattice.columns <= 1 || lattice.rows <= 1) return;
+    for (Vec2d& value : values) value = Vec2d{std::round(value.x * 1e6), std::round(value.y * 1e6)} / 1e6;
+    maps.push_back({std::move(name), make_vector_maps(lattice, values, "px")});
   }
-  /// Returns `to` minus `from` at the compared vectors, NaN at the others.
-  std::vector<Vec2d> difference(std::vector<Vec2d> const& to, std::vector<Vec2d> const& from) const {
-    if (to.empty() || from.empty()) return {};
-    std::vector<Vec2d> values(to.size(), Vec2d{std::nan(""), std::nan("")});
-    for (std::size_t i = 0; i < to.size(); ++i) {
-      if (comparison.mask[i]) values[i] = to[i] - from[i];
+  /// Adds the measurement minus a reference at the compared vectors.
+  void add_error(std::string const& against, std::vector<Vec2d> const& reference) {
+    std::vector<Vec2d> error(reference.size(), Vec2d{std::nan(""), std::nan("")});
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      if (comparison.mask[i]) error[i] = comparison.measured.displacement_px[i] - reference[i];
     }
-    return values;
-  }
-  void add_error(std::string const& name, std::string const& title, std::vector<Vec2d> const& truth) {
-    std::vector<Vec2d> const values = difference(comparison.measured.displacement_px, truth);
-    errors.push_back({{"name", name},
-                      {"title", title},
-                      {"u", component_json(values, &Vec2d::x)},
-                      {"v", component_json(values, &Vec2d::y)}});
-    add_field(name, "error " + title, values);
+    add_map("error " + against, error);
+    errors.push_back({against, std::move(error)});
   }
 };
 
 /// Formats the terms of a budget and their total as a table.
 TextTable budget_table(std::string const& title, ErrorBudget const& budget);
 
-/// Returns the known terms as data of the chart "budget".
-nlohmann::json budget_json(ErrorBudget const& budget);
+/// Returns the chart of the terms of a budget.
+Chart budget_chart(std::string const& title, Figure figure, ErrorBudget const& budget);
 
 /// Returns a sentence about the largest term of the budget; empty if no term is known.
 std::string largest_term(ErrorBudget const& budget);

@@ -9,7 +9,6 @@
 #include "studies/compare/density_file.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/density_figure.h"
-#include "studies/report/drawn_block.h"
 
 namespace gladstone {
 namespace {
@@ -68,12 +67,15 @@ ReportSection density_section(ReportPage& page, Reconstruction const& reconstruc
   page.data["density"] = summary;
   std::string const words = summarize_density(reconstruction);
   ReportSection section{"Density", {Paragraph{words}}};
-  section.blocks.push_back(drawn_block("Maps of the density", words, make_density_figure(reconstruction)));
-  section.blocks.push_back(drawn_block("Profile of the density", describe_density_profile(reconstruction),
-                                       make_density_profile(reconstruction)));
+  section.blocks.emplace_back(
+      Chart{"density", "Maps of the density", words, {{"", make_density_figure(reconstruction)}}});
+  section.blocks.emplace_back(Chart{"density_profile",
+                                    "Profile of the density",
+                                    describe_density_profile(reconstruction),
+                                    {{"", make_density_profile(reconstruction)}}});
   section.blocks.emplace_back(numbers_table(summary));
   if (!reconstruction.budget.empty()) section.blocks.emplace_back(density_budget_table(reconstruction.budget));
-  if (!reconstruction.warnings.empty()) section.blocks.emplace_back(TextList{reconstruction.warnings});
+  if (!reconstruction.warnings.empty()) section.blocks.emplace_back(TextList{to_strings(reconstruction.warnings)});
   return section;
 }
 

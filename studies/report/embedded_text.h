@@ -2,16 +2,13 @@
 
 #include <string_view>
 
-/// Texts embedded in the executable by the build (studies/CMakeLists.txt).
+/// Texts embedded in the executable by the build (CMakeLists.txt).
 namespace gladstone::embedded {
 
 extern std::string_view const report_css;
 extern std::string_view const report_js;
+extern std::string_view const figure_js;   ///< studies/drawing/figure.js
 extern std::string_view const d3_js;       ///< Mike Bostock's d3, from Debian's package node-d3
 extern std::string_view const d3_licence;  ///< licence of d3, from the same package
-extern std::string_view const setup_keys;  ///< docs/reference/setup.md
-/// Templates of `gladstone init`, from studies/commands/templates.
-extern std::string_view const template_bos, template_piv, template_stereo, template_calibration, template_study,
-    template_design;
 
 }  // namespace gladstone::embedded

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "render/files/base64.h"
+#include "studies/drawing/figure_json.h"
 #include "studies/report/embedded_text.h"
 #include "studies/report/report_page.h"
 
@@ -57,6 +58,8 @@ std::string cell_of(TableCell const& cell, bool numeric) {
 }
 
 struct HtmlBlock {
+  nlohmann::json& charts;  ///< figures of the charts, for report.js
+
   std::string operator()(Paragraph const& one) const { return "<p>" + escaped(one.text) + "</p>\n"; }
 
   std::string operator()(TextList const& list) const {
@@ -88,10 +91,15 @@ struct HtmlBlock {
   }
 
   std::string operator()(Chart const& chart) const {
+    std::string const place = chart.figures.empty() ? "" : fmt::format(" data-figures=\"{}\"", charts.size());
+    nlohmann::json figures = nlohmann::json::array();
+    for (auto const& [name, figure] : chart.figures)
+      figures.push_back({{"name", name}, {"figure", figure_json(figure)}});
+    if (!figures.empty()) charts.push_back({{"chart", chart.kind}, {"figures", std::move(figures)}});
     return fmt::format(
-        "<figure class=\"chart\" data-chart=\"{}\"><figcaption>{}</figcaption>\n<div class=\"controls\"></div>"
+        "<figure class=\"chart\" data-chart=\"{}\"{}><figcaption>{}</figcaption>\n<div class=\"controls\"></div>"
         "<div class=\"plot\"></div>\n<p class=\"alt\">{}</p></figure>\n",
-        escaped(chart.kind), escaped(chart.title), escaped(chart.alt));
+        escaped(chart.kind), place, escaped(chart.title), escaped(chart.alt));
   }
 
   std::string operator()(FramePictures const& pair) const {
@@ -102,13 +110,6 @@ struct HtmlBlock {
     return fmt::format(
         "<figure class=\"frames\"><figcaption>{}</figcaption>\n<div class=\"pair\">{}{}</div></figure>\n",
         escaped(pair.title), picture(pair.first_name, pair.first_png), picture(pair.second_name, pair.second_png));
-  }
-
-  std::string operator()(Picture const& picture) const {
-    return fmt::format(
-        "<figure class=\"picture\"><figcaption>{0}</figcaption>\n<img alt=\"{1}\" "
-        "src=\"data:image/png;base64,{2}\">\n<p class=\"alt\">{1}</p></figure>\n",
-        escaped(picture.title), escaped(picture.alt), base64(picture.png));
   }
 
   std::string operator()(FigureFile const& figure) const {
@@ -143,9 +144,12 @@ std::string html_page(ReportPage const& page) {
                       escaped(page.title), escaped(page.question));
   for (std::string const& finding : page.findings) html += "<li>" + escaped(finding) + "</li>\n";
   html += "</ol></header>\n";
+  nlohmann::json data = page.data;
+  data["charts"] = nlohmann::json::array();
+  HtmlBlock const html_block{data["charts"]};
   for (ReportSection const& section : page.sections) {
     html += fmt::format("<section>\n<h2>{}</h2>\n", escaped(section.title));
-    for (ReportBlock const& block : section.blocks) html += std::visit(HtmlBlock{}, block);
+    for (ReportBlock const& block : section.blocks) html += std::visit(html_block, block);
     html += "</section>\n";
   }
   html += fmt::format(
@@ -153,9 +157,9 @@ std::string html_page(ReportPage const& page) {
       "</details></section>\n",
       escaped(embedded::d3_licence));
   html += "</main>\n<div id=\"spoken\" aria-live=\"polite\"></div>\n";
-  html += "<script type=\"application/json\" id=\"data\">" + json_in_script(page.data) + "</script>\n";
-  html +=
-      fmt::format("<script>{}</script>\n<script>{}</script>\n</body>\n</html>\n", embedded::d3_js, embedded::report_js);
+  html += "<script type=\"application/json\" id=\"data\">" + json_in_script(data) + "</script>\n";
+  html += fmt::format("<script>{}</script>\n<script>{}</script>\n<script>{}</script>\n</body>\n</html>\n",
+                      embedded::d3_js, embedded::figure_js, embedded::report_js);
   return html;
 }
 

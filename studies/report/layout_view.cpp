@@ -10,7 +10,6 @@
 #include "studies/figures/design_map.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
-#include "studies/report/drawn_block.h"
 
 namespace gladstone {
 namespace {
@@ -69,7 +68,7 @@ Figure make_map(LayoutView const& view) {
 
 }  // namespace
 
-Figure make_layout_figure(LayoutView const& view) {
+Figure make_view_figure(LayoutView const& view) {
   return view.piv ? make_piv_layout_figure(*view.piv) : make_layout_figure(view.bench);
 }
 
@@ -87,19 +86,21 @@ std::string layout_text(LayoutView const& view) {
 }
 
 ReportBlock layout_block(LayoutView const& view, std::string const& whose) {
-  return drawn_block("Layout of " + whose, layout_text(view), make_layout_figure(view));
+  return Chart{"layout", "Layout of " + whose, layout_text(view), {{"", make_view_figure(view)}}};
 }
 
 ReportSection layout_section(LayoutView const& view, std::string const& whose) {
-  ReportBlock map =
-      drawn_block("Design map of " + whose, view.piv ? text_of_stop(*view.piv) : map_text(view.bench), make_map(view));
+  Chart map{"design_map",
+            "Design map of " + whose,
+            view.piv ? text_of_stop(*view.piv) : map_text(view.bench),
+            {{"", make_map(view)}}};
   return {"Set-up", {layout_block(view, whose), std::move(map)}};
 }
 
 std::vector<std::string> draw_layout_and_map(std::string const& folder, std::string const& format,
                                              LayoutView const& view) {
   std::vector<std::string> const drawn{folder + "/layout." + format, folder + "/design_map." + format};
-  draw_figure(make_layout_figure(view), drawn.front());
+  draw_figure(make_view_figure(view), drawn.front());
   draw_figure(make_map(view), drawn.back());
   return drawn;
 }

@@ -13,20 +13,20 @@
 
 namespace gladstone {
 
-/// Set-up of a setup as drawn in its report.
+/// Optical layout of a setup, as drawn in a report.
 struct LayoutView {
-  std::unique_ptr<FixedDesignParameters> given;  ///< null for PIV
-  DesignPoint<double> bench;                     ///< unused for PIV
+  std::unique_ptr<FixedDesignParameters> given;  ///< given properties of the set-up; null for PIV
+  DesignPoint<double> bench;                     ///< model of the set-up; unused for PIV
   std::optional<Setup> piv;
 };
 
-/// Returns nullopt for set-ups that the drawing does not cover: a calibration, a posed, tilted or plenoptic camera,
-/// windows, no aperture stop, a lens that is neither thin nor rotationally symmetric on the axis, or, for PIV, a laser
-/// sheet outside the plane Z = 0. The medium's field is not read.
+/// Creates the layout of a setup; nullopt if the drawing does not cover it: a calibration, a posed, tilted or plenoptic
+/// camera, windows, no aperture stop, a lens that is neither thin nor rotationally symmetric on the axis, or, for PIV,
+/// a laser sheet outside the plane Z = 0. The medium's field is not read.
 std::optional<LayoutView> layout_view(CaseSetup loaded);
 
 /// Returns the layout.
-Figure make_layout_figure(LayoutView const& view);
+Figure make_view_figure(LayoutView const& view);
 
 /// Describes the contents of the layout in numbers.
 std::string layout_text(LayoutView const& view);
@@ -34,11 +34,11 @@ std::string layout_text(LayoutView const& view);
 /// Returns the section "Set-up": the layout to scale, and the design map with the set-up as a point (for PIV, particle
 /// images against f-number). Both are drawn now and embedded in the page; without gnuplot, they are replaced by their
 /// descriptions.
-/// @param whose  "the measurement", "the base"
+/// @param whose  owner of the set-up in the texts: "the measurement", "the base"
 ReportSection layout_section(LayoutView const& view, std::string const& whose);
 
-/// Returns the layout only.
-/// @param whose  e.g. "case 3"
+/// Returns the layout without the design map.
+/// @param whose  owner of the set-up in the texts, e.g. "case 3"
 ReportBlock layout_block(LayoutView const& view, std::string const& whose);
 
 /// Draws layout and design map into files for a publication.

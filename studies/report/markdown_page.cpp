@@ -57,10 +57,6 @@ struct MarkdownBlock {
     return fmt::format("{}. {}\n\n", plain(pair.title), plain(pair.alt));
   }
 
-  std::string operator()(Picture const& picture) const {
-    return fmt::format("{}. {}\n\n", plain(picture.title), plain(picture.alt));
-  }
-
   std::string operator()(FigureFile const& figure) const {
     return fmt::format("![{}](<{}>)\n\n", plain(figure.alt), figure.path);
   }

@@ -1,7 +1,6 @@
 #include "studies/report/measured_files.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "studies/case/case_files.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/compared_vectors.h"
 
 namespace gladstone {
@@ -42,10 +42,10 @@ void screen(VectorFile& file, std::string const& path, std::string const& setup,
   std::string const refusal = reason_to_reject_positions(file.field, left_out, camera.columns, camera.rows);
   if (!refusal.empty()) throw DataError(ErrorCode::inconsistent, path, refusal);
   if (left_out.without_place() + left_out.displacement_beyond_image > 0) {
-    spdlog::warn("{}: vectors are excluded: {}", path, left_out.text());
+    log_warning({WarningCode::excluded, path, "vectors are excluded: " + left_out.text()});
   }
   std::string const doubt = describe_suspect_positions(file.field, camera.columns, camera.rows);
-  if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
+  if (!doubt.empty()) log_warning({WarningCode::implausible, path, doubt});
 }
 
 /// Vectors of one file in our conventions.

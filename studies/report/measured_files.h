@@ -22,7 +22,7 @@ struct MeasuredFiles {
 /// @throws DataError if a file cannot be read
 MeasuredFiles measured_files(ReportOptions const& options);
 
-/// Checks that the frames are from the setup's camera and those of the vectors.
+/// Checks that the frames are from the setup's camera, and that the vectors were measured on them.
 /// @throws DataError if their number of pixels differs from the setup's camera, or vectors.h5 names other frames
 void check_frames_match_camera(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera);
 

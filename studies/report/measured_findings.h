@@ -14,11 +14,11 @@ namespace gladstone {
 /// Results of a measurement from which its statements are derived; the displacement is the first input.
 struct MeasurementKnown {
   MeasuredGradients const& gradients;
-  PropagatedResult const& typical;  ///< for a vector of typical displacement and uncertainty
+  PropagatedResult const& typical;  ///< result for a vector of typical displacement and uncertainty
   std::vector<MeasurementInput> const& inputs;
   MeanOfRepeats const& mean;
-  SimulatedTwin const* twin = nullptr;  ///< null without a simulated twin
-  double sensitivity = 1;               ///< [px per kg/m^4]
+  SimulatedTwin const* twin = nullptr;  ///< simulated twin of the measurement; null: none
+  double sensitivity = 1;               ///< displacement per density gradient [px per kg/m^4]
 
   bool simulated() const { return twin && twin->failed.empty(); }
 };

@@ -1,26 +1,11 @@
 #include "studies/report/measured_gradients.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "studies/drawing/draw_figure.h"
-#include "studies/figures/map_panels.h"
-#include "studies/report/case_view.h"
+#include "studies/figures/map_figures.h"
 
 namespace gladstone {
-namespace {
-
-void add_map(nlohmann::json& fields, std::string const& name, std::string const& title, std::string const& unit,
-             std::vector<Vec2d> const& values) {
-  fields.push_back({{"name", name},
-                    {"title", title},
-                    {"unit", unit},
-                    {"u", component_json(values, &Vec2d::x)},
-                    {"v", component_json(values, &Vec2d::y)}});
-}
-
-}  // namespace
-
 MeasuredGradients compute_gradients(DisplacementField const& field, DesignPoint<double> const& bench, double common) {
   MeasuredGradients all;
   all.common = common;
@@ -67,27 +52,19 @@ double compute_rms(std::vector<double> const& values) {
   return values.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-nlohmann::json measured_maps(DisplacementField const& field, MeasuredGradients const& all) {
-  nlohmann::json fields = nlohmann::json::array();
-  add_map(fields, "measured", "measurement", "px", field.displacement_px);
-  add_map(fields, "gradient", "density gradient, along X and Y", "kg/m^4", all.gradient);
-  add_map(fields, "combined", "combined standard uncertainty of the gradient", "kg/m^4", all.combined);
-  add_map(fields, "random", "contribution of the displacement to it", "kg/m^4", all.random);
-  return fields;
+std::vector<NamedFigure> make_measured_maps(DisplacementField const& field, MeasuredGradients const& all) {
+  return {{"measurement", make_vector_maps(field, field.displacement_px, "px")},
+          {"density gradient, along X and Y", make_vector_maps(field, all.gradient, "kg/m^4")},
+          {"combined standard uncertainty of the gradient", make_vector_maps(field, all.combined, "kg/m^4")},
+          {"contribution of the displacement to it", make_vector_maps(field, all.random, "kg/m^4")}};
 }
 
 std::string draw_measured_maps(std::string const& path, DisplacementField const& field, MeasuredGradients const& all) {
-  MapFigure figure;
-  figure.title = "Measured displacement, density gradient and its combined standard uncertainty";
-  figure.axes.x_first = field.position_px.front().x;
-  figure.axes.y_first = field.position_px.front().y;
-  figure.axes.x_step = field.position_px[1].x - figure.axes.x_first;
-  figure.axes.y_step = field.position_px[static_cast<std::size_t>(field.columns)].y - figure.axes.y_first;
+  MapFigure figure{.title = "Measured displacement, density gradient and its combined standard uncertainty",
+                   .axes = lattice_axes(field)};
   auto const add = [&](std::string const& title, std::vector<Vec2d> const& values, double Vec2d::*component,
                        ColourScale scale, std::string const& group) {
-    Image<double> map(field.columns, field.rows);
-    for (std::size_t i = 0; i < values.size(); ++i) map.data()[i] = values[i].*component;
-    figure.panels.push_back({title, std::move(map), scale, group});
+    figure.panels.push_back({title, component_map(field, values, component), scale, group});
   };
   add("u [px]", field.displacement_px, &Vec2d::x, ColourScale::diverging, "displacement");
   add("v [px]", field.displacement_px, &Vec2d::y, ColourScale::diverging, "displacement");

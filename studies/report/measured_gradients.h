@@ -1,21 +1,21 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "analysis/vectors/displacement_field.h"
 #include "studies/design/design_point.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 
 /// Density gradients at measured vectors with their uncertainties; components along X and Y of the world.
 struct MeasuredGradients {
-  std::vector<Vec2d> gradient;  ///< NaN at invalid vectors [kg/m^4]
+  std::vector<Vec2d> gradient;  ///< density gradient; NaN at invalid vectors [kg/m^4]
   std::vector<Vec2d> random;    ///< standard uncertainty from the displacement [kg/m^4]
-  std::vector<Vec2d> combined;  ///< including the uncertainty of the setup's parameters [kg/m^4]
-  /// number of vectors with the estimator's uncertainty; the others have that of the formula
+  std::vector<Vec2d> combined;  ///< standard uncertainty including that of the setup's parameters [kg/m^4]
+  /// number of vectors with an uncertainty by the estimator; for the others it is computed by formula
   std::size_t estimated = 0;
   double common = 0;      ///< relative uncertainty from the setup's parameters [1]
   std::size_t count = 0;  ///< number of valid vectors
@@ -33,7 +33,7 @@ double compute_rms(std::vector<double> const& values);
 
 /// Returns maps for the report, for vectors on a lattice: displacement, gradient, its combined uncertainty, and the
 /// displacement's contribution.
-nlohmann::json measured_maps(DisplacementField const& field, MeasuredGradients const& all);
+std::vector<NamedFigure> make_measured_maps(DisplacementField const& field, MeasuredGradients const& all);
 
 /// Draws displacement, gradient and its combined standard uncertainty on the lattice of the vectors.
 /// @return path of the figure

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 
 #include "analysis/errors/error_summary.h"
 #include "render/files/text_file.h"
+#include "render/scene/setup_document.h"
+#include "studies/case/warning_log.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
 #include "studies/report/case_view.h"
@@ -30,7 +31,8 @@ MeasurementInput typical_displacement(MeanOfRepeats const& mean, double formula_
   MeasurementInput input;
   input.key = "displacement_px";
   input.value = compute_rms(finite_components(mean.field.displacement_px));
-  input.sigma = repeated        ? compute_rms(sigma)  // for few repeats, the median is biased low
+  input.sigma = repeated ? compute_rms(sigma)  // the rms is used, because the median of few repeats is biased
+                                               // low
                 : sigma.empty() ? formula_px
                                 : quantile(sigma, 0.5);
   if (repeated) input.degrees_of_freedom = static_cast<double>(mean.count - 1);
@@ -49,7 +51,7 @@ SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, M
                        open_device(device.name()));
 }
 
-ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
+ReportSection causes_section(SimulatedTwin const* twin) {
   ReportSection causes{"Causes of error, by the simulated twin", {}};
   if (!twin || !twin->failed.empty()) {
     causes.blocks.emplace_back(
@@ -64,24 +66,19 @@ ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
       "Eq. 9, which contains the uncorrected bias and the bias of the estimator.",
       twin->columns, twin->rows, twin->seeds.size(), fmt::join(twin->seeds, ", "), twin->random_px,
       twin->systematic_px)});
-  page.data["budget"] = budget_json(twin->comparison.shown_budget());
+  ErrorBudget const& budget = twin->comparison.shown_budget();
+  causes.blocks.emplace_back(budget_chart("Error of every cause, of the simulated twin",
+                                          make_budget_bars("Error budget of the simulated twin", budget), budget));
   causes.blocks.emplace_back(
-      Chart{"budget", "rms of every cause, of the simulated twin", largest_term(twin->comparison.shown_budget())});
-  causes.blocks.emplace_back(
-      budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]",
-                   twin->comparison.shown_budget()));
+      budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]", budget));
   causes.blocks.emplace_back(Paragraph{explain_budget(twin->comparison)});
   return causes;
 }
 
-ReportSection maps_section(ReportPage& page, DisplacementField const& field, MeasuredGradients const& all,
-                           CameraSetup const& camera, std::string const& alt) {
-  page.data["fields"] = measured_maps(field, all);
-  page.data["grid"] = {{"columns", field.columns},
-                       {"rows", field.rows},
-                       {"x", component_json(field.position_px, &Vec2d::x)},
-                       {"y", component_json(field.position_px, &Vec2d::y)}};
-  ReportSection maps{"Maps", {Chart{"field", "Displacement, gradient and their uncertainty", alt}}};
+ReportSection maps_section(DisplacementField const& field, MeasuredGradients const& all, CameraSetup const& camera,
+                           std::string const& alt) {
+  ReportSection maps{
+      "Maps", {Chart{"field", "Displacement, gradient and their uncertainty", alt, make_measured_maps(field, all)}}};
   // fraction of the image; the vectors of full frames only omit half a window at each edge
   constexpr double doubtful = 0.5;
   if (double const share = spanned_share(field, camera); share < doubtful) {
@@ -112,12 +109,12 @@ std::optional<Reconstruction> reconstruct_measured(ReportOptions const& options,
   if (!options.conventions.empty()) density.conventions = options.conventions;
   if (mean.count == 1) return reconstruct_case(options.source, density, device, {.setup = &loaded});
   Reconstruction result = reconstruct_density(mean.field, loaded.setup, loaded.correlate.window_px.back(), density);
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  log_warnings(result.warnings);
   return result;
 }
 
 CaseSetup measured_bench(std::string const& setup_file, std::vector<UncertainInput>& uncertain) {
-  SetupDocument document = SetupDocument::from_file(setup_file);
+  SetupDocument document = read_setup_document(setup_file);
   uncertain = extract_uncertain_inputs(document);
   CaseSetup loaded = load_case_setup(std::move(document));
   if (!loaded.setup.experiment().measures_density || !loaded.setup.has_closed_form_layout()) {
@@ -169,9 +166,9 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   std::optional<LayoutView> const drawn_bench = layout_view(loaded.copy());
   if (drawn_bench) page.sections.push_back(layout_section(*drawn_bench, "the measurement"));
   if (files.frames) page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
-  if (gridded) page.sections.push_back(maps_section(page, field, all, camera, said.measurand));
+  if (gridded) page.sections.push_back(maps_section(field, all, camera, said.measurand));
   page.sections.push_back({"Uncertainty", {TextList{said.all()}, inputs_table(known)}});
-  page.sections.push_back(causes_section(page, known.twin));
+  page.sections.push_back(causes_section(known.twin));
   page.sections.push_back(density ? density_section(page, *density) : missing_density_section(command_of(options)));
   auto const draw = [&](std::string const& folder, std::string const& format) {
     std::vector<std::string> drawn;

@@ -9,6 +9,7 @@
 #include "studies/case/case_files.h"
 #include "studies/case/version_text.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/sweep/manifest.h"
 
 namespace gladstone {
@@ -63,24 +64,25 @@ WrittenReport write_report(ReportOptions const& options, Backend const& device) 
                                 run_file::manifest, case_file::setup));
   }
   if (run && (!options.vectors.empty() || !options.conventions.empty())) {
-    throw DataError(ErrorCode::arguments, options.source,
-                    fmt::format("is a study, each of whose cases has its vectors; leave {} out, or give the folder of "
-                                "a case",
-                                options.vectors.empty() ? "--conventions" : "--vectors"));
+    throw DataError(ErrorCode::arguments, options.vectors.empty() ? "--conventions" : "--vectors",
+                    options.source +
+                        " is a study, each of whose cases has its vectors; omit this option, or give the folder of "
+                        "a case");
   }
   if (run && options.density) {
-    throw DataError(ErrorCode::arguments, options.source,
-                    fmt::format("is a study, whose report contains no density; leave {} out, or give the folder of a "
-                                "case or a measurement",
-                                options.density_words.empty() ? "--reference" : options.density_words.front()));
+    throw DataError(ErrorCode::arguments, options.density_words.empty() ? "--reference" : options.density_words.front(),
+                    options.source +
+                        " is a study, whose report contains no density; omit this option, or give the folder of a "
+                        "case or a measurement");
   }
   // fails early if the output cannot be written
   OutputFile output(options.output, options.markdown ? "Markdown" : "HTML");
   bool const measured = !run && !fs::exists(fs::path(options.source) / case_file::truth);
   if (!measured && !options.repeats.empty()) {
-    throw DataError(ErrorCode::arguments, options.source,
-                    "is not a measurement (repeats determine the uncertainty of a measured mean, whose truth is "
-                    "unknown); omit --repeats, or give the folder of a measurement");
+    throw DataError(ErrorCode::arguments, "--repeats",
+                    options.source +
+                        " is not a measurement (repeats determine the uncertainty of a measured mean, whose truth is "
+                        "unknown); omit this option, or give the folder of a measurement");
   }
   ReportPage const page = run        ? run_report(options)
                           : measured ? measured_report(options, device)

@@ -19,18 +19,18 @@ struct ReportOptions {
   bool markdown = false;             ///< true: Markdown, false: HTML
   std::string figures;               ///< folder of figures for a publication; empty: none
   std::string figure_format;         ///< "png", "svg" or "pdf"
-  std::string vectors;               ///< for a CASE: path; empty: vectors of the CASE
-  std::vector<std::string> repeats;  ///< for a measurement: vectors of repeated measurements
-  /// for vectors of a CASE or a measurement, as parse_conventions() reads them; empty: those of the format
+  std::string vectors;               ///< path of the vectors of a CASE; empty: those in its folder
+  std::vector<std::string> repeats;  ///< vectors of repeated measurements, for a measurement
+  /// conventions of the vectors of a CASE or a measurement, as for parse_conventions(); empty: those of the format
   std::string conventions;
   /// for a CASE or a measurement: reconstruction of the density, without vectors, conventions and budget; empty: none
   std::optional<ReconstructOptions> density;
-  std::vector<std::string> density_words;  ///< its options as words of the command line
+  std::vector<std::string> density_words;  ///< options of the density as words of the command line
 };
 
 /// Summary of a report that was written.
 struct WrittenReport {
-  std::string findings;               ///< one per line
+  std::string findings;               ///< findings, one per line
   std::vector<std::string> doubtful;  ///< files of vectors that the report should not be based on, see ReportPage
 };
 

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "studies/drawing/figure.h"
+
 namespace gladstone {
 
 /// Blocks of a report, independent of the output format. Texts are plain; the writers escape them.
@@ -36,11 +38,12 @@ struct TextTable {
   std::vector<std::vector<TableCell>> rows;
   bool filtered = false;  ///< true for tables long enough to require a search field
 };
-/// A chart drawn by report.js from the report's data.
+/// A chart that report.js draws: one of its figures, by the reader's choice; in Markdown, replaced by its description.
 struct Chart {
-  std::string kind;  ///< a key of `charts` in report.js
+  std::string kind;  ///< name of the chart; without figures a key of `composed` in report.js, which composes them
   std::string title;
   std::string alt;  ///< description in numbers
+  std::vector<NamedFigure> figures = {};
 };
 /// Two frames that can be shown alternately at the same position.
 struct FramePictures {
@@ -48,18 +51,12 @@ struct FramePictures {
   std::string first_name, second_name;
   std::string first_png, second_png;  ///< contents of the PNG files
 };
-/// A figure embedded in the report; in Markdown, replaced by its description.
-struct Picture {
-  std::string title;
-  std::string alt;  ///< description in numbers
-  std::string png;  ///< contents of the PNG file
-};
 /// A figure stored as a separate file.
 struct FigureFile {
   std::string path;  ///< relative to the report
   std::string alt;
 };
-using ReportBlock = std::variant<Paragraph, TextList, Verbatim, TextTable, Chart, FramePictures, Picture, FigureFile>;
+using ReportBlock = std::variant<Paragraph, TextList, Verbatim, TextTable, Chart, FramePictures, FigureFile>;
 
 struct ReportSection {
   std::string title;
@@ -71,7 +68,7 @@ struct ReportPage {
   std::string question;
   std::vector<std::string> findings;
   std::vector<ReportSection> sections;
-  nlohmann::json data;  ///< data of the charts drawn by report.js
+  nlohmann::json data = nlohmann::json::object();  ///< of the charts that report.js composes
   /// files of vectors whose header declares another number of vectors, or that are likely not read as they were written
   std::vector<std::string> doubtful;
 };

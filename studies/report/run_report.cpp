@@ -117,11 +117,11 @@ void add_charts(ReportPage& page, StudyView const& study) {
   if (free > 1) errors.blocks.emplace_back(Chart{"cells", "A measure over two axes", strongest_axis(study)});
   errors.blocks.emplace_back(Chart{"scatter", "A measure against another, one point per case", page.findings.front()});
   page.sections.push_back(std::move(errors));
-  if (!study.terms.empty()) {
+  if (std::vector<NamedFigure> budgets = make_budget_figures(study.table); !budgets.empty()) {
     page.sections.push_back({"Causes of error",
                              {Paragraph{"The terms of the budget lead from theory to the measurement. They are "
                                         "correlated, so that their heights do not add up in quadrature."},
-                              Chart{"causes", "rms of every cause", largest_cause(study)}}});
+                              Chart{"causes", "rms of every cause", largest_cause(study), std::move(budgets)}}});
   }
   if (std::string const finding = uncertainty_finding(study); !finding.empty() && free > 0) {
     page.data["coverage"] = coverage_measure;

@@ -23,7 +23,7 @@ struct SimulatedTwin {
 inline constexpr int most_twin_px = 512;  ///< maximum width and height of the simulated part [px]
 
 /// Simulates a measurement twice with the given density.
-/// @param density  at the vectors of the lattice, minus the ambient density [kg/m^3]
+/// @param density  density at the vectors of the lattice, minus the ambient density [kg/m^3]
 /// @param spacing  distance between its nodes [m]
 /// @param centre   X and Y of its centre [m]
 SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& density, double spacing, Vec2d centre,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "studies/case/json_text.h"
 #include "studies/figures/study_axes.h"
@@ -12,12 +13,12 @@ namespace gladstone {
 
 namespace {
 
-constexpr std::size_t longest_plain_table = 20;  ///< maximum without a search field
+constexpr std::size_t longest_plain_table = 20;  ///< maximum number of rows of a table without a search field
 
 }  // namespace
 
 nlohmann::json study_data(StudyView const& study) {
-  nlohmann::json data{{"main", study.main}, {"terms", study.terms}};
+  nlohmann::json data{{"main", study.main}};
   if (study.knows("signal_px")) data["second"] = "signal_px";
   data["axes"] = data["measures"] = data["rows"] = nlohmann::json::array();
   std::vector<FigureAxis> axes;

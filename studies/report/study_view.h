@@ -56,8 +56,8 @@ std::string describe_question(StudyView const& study);
 /// Describes the cases with the smallest and largest error.
 std::string extremes(StudyView const& study, StudyRow const& best, StudyRow const& worst);
 
-/// Names the points of the study with the smallest error relative to the signal, and of the density gradient, which
-/// need not be those with the smallest error in pixels; empty if both are unknown.
+/// Names the points of the study with the smallest error relative to the signal, and with the smallest error of the
+/// density gradient, which need not be those with the smallest error in pixels; empty if both are unknown.
 std::string other_rankings(StudyView const& study);
 
 /// Describes which cause is the largest, and in how many cases; empty if the budget is unknown.

@@ -20,7 +20,7 @@ struct CaseKeys {
 enum class RepeatSeeds { count, left_out };
 
 /// Computes the keys of a case.
-/// @param inputs  of the manifest: hash of each input file by its name
+/// @param inputs  hash of each input file in the manifest, by its name
 CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs,
                    RepeatSeeds seeds = RepeatSeeds::count);
 

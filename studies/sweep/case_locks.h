@@ -10,7 +10,7 @@ namespace gladstone {
 class CaseLocks {
  public:
   enum class Use {
-    take,  ///< for claiming cases; creates RUN/claims if it is missing
+    take,  ///< mode for claiming cases; creates RUN/claims if it is missing
     look   ///< read-only; if RUN/claims is missing, no case is claimed
   };
   /// Opens RUN/claims. @throws OutputError if it cannot be opened, for example because RUN is read-only and Use is
@@ -20,7 +20,7 @@ class CaseLocks {
   CaseLocks(CaseLocks const&) = delete;
   CaseLocks& operator=(CaseLocks const&) = delete;
 
-  /// CaseLocks a case for this object. If RUN/claims has been replaced or removed since it was opened, the new file is
+  /// Locks a case for this object. If RUN/claims has been replaced or removed since it was opened, the new file is
   /// opened and locked, since other processes use that one.
   /// @return false if another process has claimed the case
   /// @pre opened with Use::take
@@ -37,7 +37,7 @@ class CaseLocks {
   bool held_from(std::size_t first, std::size_t count) const;
 
   std::string path_;
-  int file_ = -1;  ///< -1: the file does not exist and Use is `look`
+  int file_ = -1;  ///< descriptor of the file; -1: the file does not exist and Use is `look`
 };
 
 }  // namespace gladstone

@@ -60,8 +60,8 @@ void add_rendering(PreparedCase const& prepared, RenderedCase const& rendered, R
   auto const add = [&result](char const* name, double value) { result.measures.emplace_back(name, value); };
   add("strain_max", prepared.strain.strain.empty() ? not_a_number : largest(prepared.strain.strain));
   add("magnification", prepared.scene.imaging.magnification);
-  add("step_mm", prepared.step.step_mm);
-  add("rays_per_dot", static_cast<double>(prepared.rays.rays));
+  add("step_mm", prepared.plan.step_estimate.step_mm);
+  add("rays_per_dot", static_cast<double>(prepared.plan.rays));
   add("exposure", rendered.exposure_e);
   add("dots", static_cast<double>(prepared.scene.source_count()));
   add("caustic_fraction", prepared.strain.caustic_fraction);

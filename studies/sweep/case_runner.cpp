@@ -15,6 +15,7 @@
 #include "render/files/output_folder.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/method.h"
+#include "render/scene/particle_scene.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/log_silencer.h"
 #include "studies/case/version_text.h"
@@ -82,7 +83,7 @@ struct CaseRunner::Shared {
   std::map<std::string, HashedFile> files;
   LruCache<BuiltMedium> media{8};
   LruCache<Plan> plans{64};
-  LruCache<RayBudget> rays{64};
+  LruCache<RenderPlan> rays{64};
   LruCache<RenderedCase> renderings{2};
   LruCache<PointTruth> truths{4};
 };
@@ -174,18 +175,17 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
     known.step = &plan->step;
     known.strain = &plan->strain;
   }
-  known.rays = shared.rays.find(plans.rays);
+  known.plan = shared.rays.find(plans.rays);
   PreparedCase prepared = prepare_case(loaded, known);
-  if (!plan) shared.plans.keep(plans.scene, {prepared.step, prepared.strain});
-  if (!known.rays) shared.rays.keep(plans.rays, prepared.rays);
+  if (!plan) shared.plans.keep(plans.scene, {prepared.plan.step_estimate, prepared.strain});
+  if (!known.plan) shared.rays.keep(plans.rays, prepared.plan);
 
   RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // theory at the dots, for truth.h5
   bool const given = loaded.setup.render.rays_per_dot.has_value();
-  std::string const traced =
-      fmt::format("\n{}, {} rays {}, for a level {}, fineness {}{}", to_string(resolve_render_method(prepared.scene)),
-                  given ? "given" : "auto", prepared.scene.rays_per_dot,
-                  prepared.rays.adaptive_criteria ? prepared.rays.adaptive_criteria->level : 0.0,
-                  prepared.rays.fineness, keep.empty() ? "" : ", theory");
+  std::string const traced = fmt::format("\n{}, {} rays {}, for a level {}, fineness {}{}",
+                                         to_string(prepared.plan.method), given ? "given" : "auto", prepared.plan.rays,
+                                         prepared.plan.adaptive_criteria ? prepared.plan.adaptive_criteria->level : 0.0,
+                                         prepared.plan.fineness, keep.empty() ? "" : ", theory");
   std::string const frames_key = keys.scene + traced;
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
@@ -231,10 +231,10 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   result.measures = flat_measures(compute_error_measures(comparison));
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",
-                               summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);
+                               summarize_errors(comparison.point.displacement_px, still, comparison.mask)["rms_px"]);
   add_relative_errors(prepared.scene.setup, result);
-  result.measures.emplace_back("blur_px",
-                               summarize_errors(comparison.point.displacement_std_px, still, comparison.mask).rms_px);
+  result.measures.emplace_back(
+      "blur_px", summarize_errors(comparison.point.displacement_std_px, still, comparison.mask)["rms_px"]);
   add_rendering(prepared, rendered, frames, result);
   result.warnings.insert(result.warnings.end(), measured.field.warnings.begin(), measured.field.warnings.end());
   result.measures.emplace_back("warnings", static_cast<double>(result.warnings.size()));

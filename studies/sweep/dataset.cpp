@@ -78,7 +78,7 @@ std::vector<std::uint16_t> read_frames(CaseWithImages const& one, std::vector<st
   return both;
 }
 
-/// Displacement map of the data set: name, image to which its positions refer, and a description of these.
+/// Displacement map of the data set: name, image to which its positions refer, and a description of the positions.
 struct DisplacementMapName {
   char const* name;
   TruthAt at;
@@ -103,7 +103,7 @@ std::vector<double> numbers_of(Image<Vec2d> const& map) {
 struct KeptCases {
   std::vector<CaseWithImages> cases;
   StudyTable table;         ///< table of the study with the rows of these cases only
-  std::size_t without = 0;  ///< number of the other cases
+  std::size_t without = 0;  ///< number of cases without images
 
   std::string const& sources() const { return cases.front().sources; }
 };
@@ -204,8 +204,9 @@ void write_packed_case(Hdf5Writer& file, std::size_t i, CaseWithImages const& on
   file.write_rows<double>("/truth/flux", row, flux);
   PreparedCase const prepared = prepare_stored_case(one.folder);
   for (DisplacementMapName const& map : maps) {
-    file.write_rows<double>(
-        map.name, i, numbers_of(displacement_truth(prepared.scene, renderer, map.at, static_cast<int>(sizes.spacing))));
+    file.write_rows<double>(map.name, i,
+                            numbers_of(displacement_truth(prepared.scene, prepared.plan, renderer, map.at,
+                                                          static_cast<int>(sizes.spacing))));
   }
 }
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 #include <string_view>
 
 #include "render/base/contracts.h"
+#include "render/base/error.h"
 #include "studies/sweep/case_list.h"
 
 namespace gladstone {
@@ -15,7 +15,7 @@ namespace {
 
 constexpr char const* script_text = R"(#!/bin/sh
 # Written by "gladstone sweep run --slurm": {cases} missing cases in {tasks} tasks, one line of cases a task.
-# What is whole is not computed again: a task that was preempted or requeued goes on where it was.
+# Complete results are not computed again: a task that was preempted or requeued continues with the missing cases.
 cases=$(sed -n "$((SLURM_ARRAY_TASK_ID + 1))p" <<'END'
 {lines}
 END
@@ -57,9 +57,10 @@ JobArray make_job_array(std::string const& program, std::string const& run, std:
   std::size_t const least = (cases.size() + most - 1) / most;
   std::size_t const size = options.cases_per_task == 0 ? least : options.cases_per_task;
   if (size < least) {
-    throw std::invalid_argument(
+    throw DataError(
+        ErrorCode::arguments, "--cases-per-task",
         fmt::format("{} cases with {} per task require more tasks than an array of this cluster may have ({}, its "
-                    "MaxArraySize); use --cases-per-task {} or more",
+                    "MaxArraySize); use {} or more",
                     cases.size(), size, most, least));
   }
   JobArray array;

@@ -15,7 +15,7 @@ namespace gladstone {
 /// Value of a study's axis in a case.
 struct ParameterValue {
   std::string label;             ///< displayed text: a number, a text, or the label in the study file
-  std::optional<double> number;  ///< in the unit of the key; nullopt if the value is not a number
+  std::optional<double> number;  ///< value in the unit of the key; nullopt if it is not a number
 
   /// Returns true if the study file defines a label for a number that differs from the number itself.
   bool has_own_label() const;
@@ -26,14 +26,15 @@ std::string number_label(double number);
 
 /// One case of a study: a line of RUN/manifest.jsonl, which determines its result completely.
 struct ManifestCase {
-  std::size_t index = 0;  ///< from 0: line number - 1
+  std::size_t index = 0;  ///< number of the case, from 0: line number - 1
   /// From 0; repeats differ in random dots, rays and noise.
   std::size_t repeat = 0;
   /// Seed of the repeat, equal for all points of the study.
   std::uint64_t seed = 0;
   /// "cpu" or "cuda": device that must compute the case.
   std::string device;
-  std::vector<std::pair<std::string, ParameterValue>> parameters;  ///< by key path of the axis, in the study's order
+  std::vector<std::pair<std::string, ParameterValue>> parameters;  ///< values by key path of the axis, in the study's
+                                                                   ///< order
   /// Complete setup (TOML) with absolute file names; "auto" values are not resolved.
   std::string setup;
   std::map<std::string, std::string> inputs;  ///< file_hash() of every file in the setup, by its absolute name

@@ -8,7 +8,7 @@ namespace gladstone {
 
 /// Checks whether a study can be planned into RUN.
 /// @throws OutputError if RUN contains something other than a study, cannot be written, or the plan would overwrite one
-///         of its own inputs
+/// of its inputs
 void check_plan_folder(std::string const& run, StudyFile const& study);
 
 /// Result of planning: into a new folder, onto an identical plan, or replacing a different plan.

@@ -10,7 +10,7 @@ namespace gladstone {
 
 /// A point of a study in a ranking.
 struct RankedPoint {
-  std::size_t row = 0;  ///< row of its first case
+  std::size_t row = 0;  ///< row of the point's first case
   double value = 0;     ///< mean of the measure over the finished repeats
 };
 

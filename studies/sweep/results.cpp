@@ -22,6 +22,7 @@
 #include "render/files/stop_point.h"
 #include "render/files/text_file.h"
 #include "studies/case/version_text.h"
+#include "studies/case/warning_json.h"
 
 namespace gladstone {
 namespace {
@@ -98,7 +99,7 @@ CaseResult result_of(Json const& json, ResultPart part) {
   result.error = json.at("error").get<std::string>();
   result.again = json.value("again", false);
   result.pairs_only = json.value("pairs_only", false);
-  result.warnings = json.at("warnings").get<std::vector<std::string>>();
+  result.warnings = read_warnings(json);
   result.seconds_render = number_of(json.at("seconds_render"));
   result.seconds_correlate = number_of(json.at("seconds_correlate"));
   result.seconds_compare = number_of(json.at("seconds_compare"));
@@ -161,7 +162,8 @@ std::string result_text(CaseResult const& result) {
   json["seconds_render"] = number(result.seconds_render);
   json["seconds_correlate"] = number(result.seconds_correlate);
   json["seconds_compare"] = number(result.seconds_compare);
-  json["warnings"] = result.warnings;
+  json["warnings"] = to_strings(result.warnings);
+  json["warning_records"] = result.warnings;
   json["measures"] = Json::object();
   Json::object_t& measures = json["measures"].get_ref<Json::object_t&>();
   for (auto const& [name, value] : result.measures) measures.emplace_back(name, number(value));

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/sweep/manifest.h"
 #include "studies/sweep/vector_errors.h"
 
@@ -20,15 +21,15 @@ struct CaseResult {
   std::string line_hash;               ///< hash of the manifest line of the case
   CaseStatus status = CaseStatus::ok;  ///< ok or failed
   std::string error;                   ///< error message of a failed case
-  /// Failed because of insufficient memory; the next run repeats it.
+  /// true: the case failed because of insufficient memory, and the next run repeats it
   bool again = false;
-  /// Only the images were computed (CaseParts::images): no vectors and no measures of errors.
+  /// true: only the images were computed (CaseParts::images), no vectors and no measures of errors
   bool pairs_only = false;
-  /// Numbers of errors.json by dotted path, and others; NaN: unknown.
+  /// Measures by name: the numbers of errors.json by dotted path, and others; NaN: unknown.
   std::vector<std::pair<std::string, double>> measures;
-  /// In the order of vector_error_names(); used to compare repeats.
+  /// Errors of each kind at individual vectors, in the order of vector_error_names(); used to compare repeats.
   std::vector<VectorErrors> vectors;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   double seconds_render = 0, seconds_correlate = 0, seconds_compare = 0;
   std::string device;
   std::string build;  ///< build_text() of the gladstone build that computed it; empty: unknown

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// RAII guard that holds a claim.
+/// RAII guard that claims a case, if no other process has claimed it.
 class Claim {
  public:
   Claim(CaseLocks& claims, std::size_t index) : claims_(claims), index_(index), taken_(claims.take(index)) {}
@@ -37,7 +37,7 @@ class Claim {
 };
 
 /// Computes the requested parts of a case. If its vectors and errors were computed before, they are computed again with
-/// the images, so that none of its numbers is lost.
+/// the images, so that the result retains all of its numbers.
 CaseResult compute_case(std::string const& run, Manifest const& cases, std::size_t index, RunSelection const& selection,
                         CaseComputation const& compute) {
   auto const known = read_result(run, index, cases.line_hash(index), ResultPart::head);

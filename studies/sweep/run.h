@@ -26,7 +26,7 @@ std::vector<std::size_t> selected_cases(std::size_t count, RunSelection const& s
 /// State of the selected cases.
 struct RunState {
   std::size_t ok = 0;
-  std::vector<CaseResult> failed;       ///< without measures
+  std::vector<CaseResult> failed;       ///< results of the failed cases, without measures
   std::vector<std::size_t> missing;     ///< cases without an intact result
   std::vector<std::size_t> running;     ///< subset of `missing` that a process has claimed
   std::vector<std::size_t> pairs_only;  ///< finished cases of which only the images were computed

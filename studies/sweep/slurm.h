@@ -43,8 +43,8 @@ JobEnd run_job_array(JobArray const& array, CountRemaining const& remaining);
 /// Waits for a job returned by find_running_job(). @throws Interrupted, as run_job_array()
 JobEnd wait_for_job(std::string const& job, CountRemaining const& remaining);
 
-/// Returns the last line of a task's log, or the last message of Slurm itself if there is one, for example
-/// "slurmstepd: error: *** JOB 12 ON node3 CANCELLED ... DUE TO TIME LIMIT ***". Empty if there is no log.
+/// Returns the last line of a task's log, or the last message of Slurm itself if there is one, for example "slurmstepd:
+/// error: *** JOB 12 ON node3 CANCELLED ... DUE TO TIME LIMIT ***". Empty if the log does not exist.
 std::string last_log_message(JobArray const& array, std::string const& job, std::size_t task);
 
 }  // namespace gladstone

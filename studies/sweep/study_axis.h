@@ -29,7 +29,7 @@ struct AxisPlan {
   std::vector<std::string> path;  ///< parts of the key path
   SetupPlace place;
   std::vector<AxisValue> list;
-  std::optional<Range> range;  ///< replaces `list`
+  std::optional<Range> range;  ///< range of generated numbers, used instead of `list`
 
   std::size_t size() const { return range ? range->count : list.size(); }
   /// @pre i < size()

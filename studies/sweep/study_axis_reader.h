@@ -8,7 +8,7 @@
 
 namespace gladstone {
 
-/// Receives a problem of a study file and its position there.
+/// Receives a problem of a study file and its position in the file.
 using ReportProblem = std::function<void(SetupPlace const& place, std::string message)>;
 
 /// Reads an axis of a study file: a list of values, or a range.

@@ -71,7 +71,7 @@ std::vector<StudyColumn> axis_columns(StudyTable const& table) {
                        !axis.numeric});
     if (!axis.labelled) continue;
     columns.push_back({axis.key + ".label", [k](StudyRow const& row) { return static_cast<double>(row.value[k]); },
-                       axis.labels, "label of the value of that key", true});
+                       axis.labels, "label of the value of the axis", true});
   }
   columns.push_back({"case",
                      [](StudyRow const& row) { return static_cast<double>(row.index); },

@@ -14,7 +14,8 @@ namespace gladstone {
 struct StudyColumn {
   std::string name;
   std::function<double(StudyRow const&)> number;
-  std::vector<std::string> labels;  ///< the number is an index into this list; empty: the number is the value
+  /// texts of the column, of which the number is the index; empty: the number is the value
+  std::vector<std::string> labels;
   std::string description;
   bool whole = false;
 };

@@ -15,7 +15,7 @@ struct StudyFile {
   std::string path;
   std::string text;
   std::string base_path, base_text;
-  std::vector<AxisPlan> axes;  ///< in the order of the file
+  std::vector<AxisPlan> axes;  ///< axes in the order of the file
   StudyMode mode = StudyMode::grid;
   std::size_t samples = 0;  ///< number of samples in sobol mode
   std::size_t repeats = 1;

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <utility>
 
-#include "analysis/correlation/correlation_settings.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -18,6 +17,7 @@
 #include "render/base/sobol.h"
 #include "render/files/content_hash.h"
 #include "studies/case/case.h"
+#include "studies/case/correlation_setup.h"
 #include "studies/case/sequence_pair.h"
 
 namespace gladstone {
@@ -58,7 +58,7 @@ SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::ve
     if (axes_give(study, values, path)) continue;
     SetupNode const* const table = document.find({path.begin(), path.end() - 1});
     if (!table && path.size() > 2) continue;  // do not add a noise table that the setup does not have
-    // Skip a table that is not a table; reading the setup reports it.
+    // Skip a value that should be a table but is not; reading the setup reports it.
     if (table && table->kind != SetupNode::Kind::table && table->kind != SetupNode::Kind::array) continue;
     document.set(path, number);
   }
@@ -96,7 +96,7 @@ std::size_t further_values(StudyFile const& study, AxisPlan const& axis) {
   return axis.size() > 1 ? 2 : 1;
 }
 
-/// Returns the number of points needed to check all of these values.
+/// Returns the number of points needed to check the further_values() of all axes.
 std::size_t points_to_try(StudyFile const& study) {
   if (study.mode == StudyMode::zip) return study.points();
   std::size_t count = 1;
@@ -104,7 +104,7 @@ std::size_t points_to_try(StudyFile const& study) {
   return count;
 }
 
-/// Returns the i-th of these points: first the first values of all axes, then the other values of each axis with the
+/// Returns the i-th point to check: first the first values of all axes, then the other values of each axis with the
 /// first values of the others.
 std::vector<AxisValue> point_to_try(StudyFile const& study, std::size_t i) {
   if (study.mode == StudyMode::zip) return values_at(study, i);
@@ -197,7 +197,7 @@ struct StudyPlan::Parts {
   std::string device;
   SetupDocument base;
   std::mutex mutex;  ///< protects the members below
-  /// Key paths of file names, by words_of() the values.
+  /// Paths of the keys that are file names, for each words_of() the axis values.
   std::map<std::string, std::vector<std::vector<std::string>>> file_keys;
   std::map<std::string, std::string> hashes;  ///< hash of each file, by name
 
@@ -241,11 +241,11 @@ std::string StudyPlan::base() const {
   return document.written();
 }
 
-std::vector<std::string> StudyPlan::warnings() const {
+Warnings StudyPlan::warnings() const {
   StudyFile const& study = parts_->study;
   if (!describes_sequence(compose(parts_->base, study, point_to_try(study, 0), study.seed))) return {};
-  return {study.path +
-          ": every case is the first pair of the base's [sequence]; for other pairs add the axis \"sequence.pair\""};
+  return {{WarningCode::ignored, study.path,
+           "every case is the first pair of the base's [sequence]; for other pairs add the axis \"sequence.pair\""}};
 }
 
 std::size_t StudyPlan::size() const { return parts_->study.points() * parts_->study.repeats; }

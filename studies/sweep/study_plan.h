@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/sweep/manifest.h"
 #include "studies/sweep/study_file.h"
 
 namespace gladstone {
 
 /// All cases of a study, generated on access. The order has repeats outermost and, in a grid, the last axis fastest, so
-/// that neighbouring cases share the most. The seeds of target, pupil and noise depend only on the study's seed and the
-/// repeat, unless an axis specifies them.
+/// that neighbouring cases share most intermediate results. The seeds of target, pupil and noise depend only on the
+/// study's seed and the repeat, unless an axis specifies them.
 class StudyPlan {
  public:
   /// Checks values of all axes by loading complete setups. Each value of an axis is combined with the first values of
@@ -29,7 +30,7 @@ class StudyPlan {
   /// Returns the base setup of all cases, as TOML with absolute file names.
   std::string base() const;
   /// Returns what the author of the study may have overlooked: cases of the first pair of a sequence only.
-  std::vector<std::string> warnings() const;
+  Warnings warnings() const;
   std::size_t size() const;
   /// Returns a case including its line_hash. Thread-safe. @throws DataError if an input cannot be read
   ManifestCase operator[](std::size_t index) const;

@@ -11,7 +11,7 @@ struct SplitNames {
   char const* systematic;
   char const* scatter;
 };
-/// Names in the order of vector_error_names().
+/// Names of the measures with systematic error and scatter, in the order of vector_error_names().
 constexpr std::array<SplitNames, 3> split_names{{{"ray_truth.systematic_px", "ray_truth.scatter_px"},
                                                  {"eq9.systematic_px", "eq9.scatter_px"},
                                                  {"budget.estimator_px", "budget.pattern_px"}}};

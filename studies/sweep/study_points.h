@@ -8,7 +8,7 @@ namespace gladstone {
 /// point's first case, and status ok if at least one repeat is finished (otherwise the status of the first case).
 /// Measures:
 ///
-///   repeats, vectors            number of finished repeats; number of vectors that count in all of them
+///   repeats, vectors            number of finished repeats; number of vectors compared in all of them
 ///   ERROR.systematic_px         for ERROR = ray_truth, eq9: rms of the part common to all repeats (RepeatSplit)
 ///   ERROR.scatter_px            standard deviation between repeats
 ///   budget.estimator_px         estimator term of the budget with repeats: mean over the patterns

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/sweep/results.h"
 
 namespace gladstone {
@@ -16,7 +17,7 @@ struct StudyAxis {
   std::string key;                  ///< "lens.f_number"
   bool numeric = true;              ///< every value is a number
   std::vector<std::string> labels;  ///< all values as text
-  std::vector<double> numbers;      ///< in the unit of the key; NaN if not a number
+  std::vector<double> numbers;      ///< values in the unit of the key; NaN if not a number
   bool labelled = false;            ///< numeric, and the study file defines labels for some numbers
 };
 
@@ -30,7 +31,8 @@ struct StudyRow {
   bool warned = false;             ///< the case has warnings
   std::string error;               ///< error message of a failed case
   std::vector<std::size_t> value;  ///< [axes] index of the value of each axis
-  std::vector<double> measures;    ///< [StudyTable::measures] NaN if unknown or the case is not finished
+  /// [StudyTable::measures] values of the measures; NaN if unknown or the case is not finished
+  std::vector<double> measures;
   double seconds_render = std::numeric_limits<double>::quiet_NaN();
   double seconds_correlate = std::numeric_limits<double>::quiet_NaN();
   double seconds_compare = std::numeric_limits<double>::quiet_NaN();
@@ -49,11 +51,11 @@ struct StudyPoint {
 struct StudyTable {
   std::string name;  ///< name of the RUN folder
   std::vector<StudyAxis> axes;
-  std::vector<std::string> measures;  ///< "ray_truth.rms_px", "budget.terms.cone.rms_px", "magnification", ...
-  std::vector<StudyRow> rows;         ///< all cases of the manifest, in its order
-  std::vector<StudyPoint> points;     ///< in the order of their first cases
-  std::vector<std::string> builds;    ///< distinct builds of gladstone that computed the cases, sorted
-  std::string first_warning;          ///< first warning of the first case with warnings
+  std::vector<std::string> measures;     ///< "ray_truth.rms_px", "budget.terms.cone.rms_px", "magnification", ...
+  std::vector<StudyRow> rows;            ///< all cases of the manifest, in its order
+  std::vector<StudyPoint> points;        ///< in the order of their first cases
+  std::vector<std::string> builds;       ///< distinct builds of gladstone that computed the cases, sorted
+  std::optional<Warning> first_warning;  ///< first warning of the first case with warnings
 
   /// Returns the index of a measure in every row, or nullopt if no case has it.
   std::optional<std::size_t> find_measure(std::string_view name) const;

@@ -11,8 +11,9 @@ namespace gladstone {
 
 /// Errors of one kind at individual vectors of a case, stored so that repeats can be compared vector by vector.
 struct VectorErrors {
-  std::string name;              ///< one of vector_error_names()
-  std::vector<Vec2d> errors_px;  ///< at the same vectors in every repeat, rounded to 1e-6 px; NaN if not counted
+  std::string name;              ///< kind of the errors, one of vector_error_names()
+  std::vector<Vec2d> errors_px;  ///< errors at the same vectors in every repeat, rounded to 1e-6 px; NaN at vectors
+                                 ///< that are not compared
 };
 
 /// Returns the kinds of error: "ray_truth", "eq9" (measurement minus each), "estimator" (noise-free measurement minus
@@ -33,7 +34,7 @@ std::vector<VectorErrors> vector_errors(Comparison const& comparison);
 /// vectors and components. Both are unbiased; systematic^2 + scatter^2 estimates the mean square of a single repeat's
 /// errors.
 struct RepeatSplit {
-  std::size_t vectors = 0;  ///< number of vectors that count in every repeat
+  std::size_t vectors = 0;  ///< number of vectors with a known error in every repeat
   double systematic_px;     ///< rms of the common part, per component; NaN with fewer than two repeats
   double scatter_px;        ///< standard deviation between repeats, per component; NaN with fewer than two repeats
 };
@@ -41,8 +42,8 @@ struct RepeatSplit {
 /// @param repeats  errors of one kind, one vector per repeat; if their lengths differ, the result is NaN
 RepeatSplit split_repeats(std::span<std::vector<Vec2d> const> repeats);
 
-/// Mean and sample standard deviation of the finite values over repeats; NaN for none and for fewer than two,
-/// respectively.
+/// Mean and sample standard deviation of the finite values over repeats. The mean is NaN without values, the
+/// deviation with fewer than two.
 struct MeanAndSpread {
   double mean, spread;
 };

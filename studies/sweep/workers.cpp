@@ -37,7 +37,7 @@ constexpr char const* executable = "/proc/self/exe";
 
 struct Worker {
   pid_t process = -1;
-  int reports = -1;  ///< -1: the worker has ended
+  int reports = -1;  ///< descriptor from which reports are read; -1: the worker has ended
   WorkerEnd end;
 };
 
@@ -126,7 +126,7 @@ std::vector<WorkerEnd> run_workers(std::vector<std::vector<std::string>> const& 
     for (Worker const& worker : workers.all) wait.push_back({worker.reports, POLLIN, 0});
     if (::poll(wait.data(), wait.size(), 100) <= 0) continue;
     for (std::size_t k = 0; k < wait.size(); ++k) {
-      if (wait[k].revents == 0) continue;  // also true of workers that have ended
+      if (wait[k].revents == 0) continue;  // workers that have ended are skipped, too
       Worker& worker = workers.all[k];
       hear(worker, finished);
       if (worker.reports >= 0 || worker.end.signal == 0 || stopped || !restart(worker.end)) continue;

@@ -10,15 +10,15 @@ namespace gladstone {
 
 /// Final state of a worker process.
 struct WorkerEnd {
-  int exit_code = 0;  ///< -1: terminated by a signal
+  int exit_code = 0;  ///< exit code; -1: terminated by a signal
   int signal = 0;
-  std::optional<std::size_t> at;  ///< the case that it was computing
+  std::optional<std::size_t> at;  ///< case that the process was computing when it ended
 };
 
 /// Message from a worker to its parent: a case was begun or finished.
 struct WorkerReport {
   std::uint64_t index = 0;
-  std::uint64_t finished = 0;  ///< 0 or 1
+  std::uint64_t finished = 0;  ///< 1: the case was finished; 0: it was begun
 };
 
 /// Runs several instances of this executable in parallel, each with its own arguments, and waits for all of them. Each

@@ -96,7 +96,7 @@ TEST(DetectConventions, ReportsUndecidableConventions) {
       200);
   EXPECT_TRUE(found.ambiguous);
   EXPECT_EQ(found.conventions, file.conventions);
-  EXPECT_THAT(found.report, HasSubstr("another reading fits as well"));
+  EXPECT_THAT(found.report, HasSubstr("another interpretation fits as well"));
 }
 
 /// Waves without symmetry, with an amplitude of 0.1 px and wavelengths of 37 to 61 px. A shift by (12, -4) px is a
@@ -310,7 +310,7 @@ TEST(DetectConventions, ReportsOnlyDeterminableConventions) {
   }
   EXPECT_THAT(detect_conventions(shifted, shear, 200).mistake.text,
               AllOf(testing::StartsWith("positions are shifted by 15.99 px in y"),
-                    HasSubstr("in x this displacement does not")));
+                    HasSubstr("does not determine a shift in x")));
   EXPECT_EQ(detect_conventions(stretched, shear, 200).mistake.text,
             "u is 3 times the truth (v is too small for an estimate)");
 }

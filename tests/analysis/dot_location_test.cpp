@@ -9,6 +9,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "tests/analysis/synthetic_dots.h"
+#include "tests/support/poisson_variate.h"
 
 namespace gladstone::tracking {
 namespace {
@@ -54,7 +55,7 @@ std::vector<SyntheticDot> isolated_dots(double sigma, Vec2d shift = {}) {
   return dots;
 }
 
-/// Index of the located dot within a radius of a place that is nearest to it; -1: none.
+/// Returns the index of the located dot nearest to a place, if it is within a radius; -1 otherwise.
 int nearest_dot(LocatedDots const& located, Vec2d place, double radius) {
   int best = -1;
   for (std::size_t k = 0; k < located.dots.size(); ++k) {
@@ -66,7 +67,7 @@ int nearest_dot(LocatedDots const& located, Vec2d place, double radius) {
   return best;
 }
 
-/// Errors of the located dots over the bound and over their own uncertainty.
+/// Rms errors of the located dots, relative to the bound and relative to their stated uncertainty.
 struct Accuracy {
   double over_bound = 0, over_sigma = 0;
 };
@@ -172,7 +173,7 @@ TEST(DotLocation, FindsDarkDotsOnUnevenPaper) {
   for (SyntheticDot const& dot : dots) EXPECT_GE(nearest_dot(located, dot.centre, 0.06), 0);
 }
 
-/// Result of the location of all dots away from the edge.
+/// Result of the location in a whole frame: found dots and wrongly located dots, away from the edge.
 struct Yield {
   double found = 0;  ///< fraction located within half a pixel; each located dot counts for one true dot only
   int strays = 0;    ///< number of located dots that do not belong to a true dot

@@ -55,7 +55,7 @@ TEST(ErrorBudget, TermsAddUpToTheTotal) {
   // The total equals the error summary of the last stage against the first one.
   ErrorSummary const summary =
       summarize_errors(stages.back().displacement_px, stages.front().displacement_px, VectorMask(500, 1));
-  EXPECT_DOUBLE_EQ(budget.total.rms_px, summary.rms_px);
+  EXPECT_DOUBLE_EQ(budget.total.rms_px, summary["rms_px"]);
 }
 
 TEST(ErrorBudget, CovarianceHoldsTheVariancesAndIsSymmetric) {
@@ -111,7 +111,7 @@ TEST(ErrorBudget, AttributesGapToFirstTerm) {
   std::vector<Vec2d> const& window = stages[5].displacement_px;
   ASSERT_EQ(stages[5].name, "window");
   EXPECT_DOUBLE_EQ(term(budget, "estimator").rms_px,
-                   summarize_errors(stages.back().displacement_px, window, {}).rms_px);
+                   summarize_errors(stages.back().displacement_px, window, {})["rms_px"]);
 }
 
 TEST(ErrorBudget, LeavesOutVectorsThatOneStageLacks) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/preparation/frame_changes.h"
 #include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/files/image_file.h"
@@ -17,19 +18,18 @@
 namespace gladstone {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-FramePreparation preparation_of(std::string const& tables) {
-  SetupDocument document = SetupDocument::from_text(tables, "case.toml", ::testing::TempDir());
-  SetupTable correlate = document.root().table("correlate");
-  FramePreparation preparation = read_frame_preparation(correlate);
-  document.finish();
-  return preparation;
+HostFrames with_mask(Image<double> const& reference, Image<double> const& flow, FrameChange mask) {
+  FramePreparation preparation;
+  preparation.masks.push_back(std::move(mask));
+  return prepare_frames(HostFrames(reference, flow), preparation);
 }
 
-HostFrames prepared(Image<double> const& reference, Image<double> const& flow, std::string const& tables) {
-  return prepare_frames(HostFrames(reference, flow), preparation_of(tables));
+HostFrames with_step(Image<double> const& reference, Image<double> const& flow, FrameChange step) {
+  FramePreparation preparation;
+  preparation.steps.push_back(std::move(step));
+  return prepare_frames(HostFrames(reference, flow), preparation);
 }
 
 Image<double> picture_of(int side, std::function<double(int, int)> const& level) {
@@ -39,20 +39,13 @@ Image<double> picture_of(int side, std::function<double(int, int)> const& level)
   return picture;
 }
 
-std::string problems_of(std::string const& tables) {
-  return error_of([&] { preparation_of(tables); });
-}
-
 // A rectangle between pixel centres contains a countable number of them; a triangle with corners (0, 0), (40, 0), (0,
 // 40), shifted by less than a pixel, contains those with i + j < 40.
 TEST(PolygonMask, LeavesOutThePixelsInside) {
   Image<double> const frame(64, 64, 5.0);
-  HostFrames const box = prepared(frame, frame,
-                                  "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [9.5, 19.5, 19.5, 9.5]\n"
-                                  "y_px = [4.5, 4.5, 14.5, 14.5]\n");
-  HostFrames const corner = prepared(frame, frame,
-                                     "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [-0.3, 39.7, -0.3]\n"
-                                     "y_px = [-0.3, -0.3, 39.7]\n");
+  HostFrames const box =
+      with_mask(frame, frame, make_polygon_mask({{9.5, 4.5}, {19.5, 4.5}, {19.5, 14.5}, {9.5, 14.5}}));
+  HostFrames const corner = with_mask(frame, frame, make_polygon_mask({{-0.3, -0.3}, {39.7, -0.3}, {-0.3, 39.7}}));
   for (int j = 0; j < 64; ++j)
     for (int i = 0; i < 64; ++i) {
       EXPECT_EQ(std::isnan(box.reference()(i, j)), i >= 10 && i < 20 && j >= 5 && j < 15) << i << ' ' << j;
@@ -66,13 +59,11 @@ TEST(ImageMask, LeavesOutWhereThePictureIsBlack) {
   Image<std::uint16_t> mask(32, 32, 255);
   for (int j = 0; j < 32; ++j) mask(7, j) = 0;
   write_tiff(file, mask, {});
-  std::string const table = "[[correlate.mask]]\nkind = \"image\"\nfile = \"gladstone_mask.tif\"\n";
-  EXPECT_THAT(preparation_of(table).files, ElementsAre(file));
   Image<double> const frame(32, 32, 5.0);
-  HostFrames const frames = prepared(frame, frame, table);
+  HostFrames const frames = with_mask(frame, frame, make_image_mask(file));
   for (int i = 0; i < 32; ++i) EXPECT_EQ(std::isnan(frames.flow()(i, 3)), i == 7);
   Image<double> const other(30, 32, 5.0);
-  EXPECT_THROW(prepared(other, other, table), DataError);
+  EXPECT_THROW(with_mask(other, other, make_image_mask(file)), DataError);
   std::filesystem::remove(file);
 }
 
@@ -80,12 +71,9 @@ TEST(ImageMask, LeavesOutWhereThePictureIsBlack) {
 TEST(ImageMask, ThatHasPixelsWhichAreNoNumbersIsRefused) {
   std::string const file = GLADSTONE_DATA_DIR "/../tests/cases/pictures/mask_nan.tif";
   Image<double> const frame(7, 5, 5.0);
-  for (std::string const& table : {"[[correlate.mask]]\nkind = \"image\"\nfile = \"" + file + "\"\n",
-                                   "[[correlate.preprocess]]\nkind = \"background\"\nframe = [{ reference = \"" + file +
-                                       "\", flow = \"" + file + "\" }]\n"}) {
-    EXPECT_THAT([&] { prepared(frame, frame, table); },
-                ThrowsDataError(ErrorCode::invalid_value, "mask_nan.tif", HasSubstr("14 of 35 pixels")))
-        << table;
+  for (FrameChange const& change : {make_image_mask(file), make_background_subtraction("minimum", {file}, {file})}) {
+    EXPECT_THAT([&] { with_mask(frame, frame, change); },
+                ThrowsDataError(ErrorCode::invalid_value, "mask_nan.tif", HasSubstr("14 of 35 pixels")));
   }
 }
 
@@ -95,13 +83,11 @@ TEST(IntensityMask, LeavesOutWhatIsBrightInEitherFrame) {
   reference(3, 4) = 200.0;
   flow(20, 21) = 201.0;
   flow(9, 9) = std::numeric_limits<double>::quiet_NaN();
-  HostFrames const frames = prepared(reference, flow, "[[correlate.mask]]\nkind = \"intensity\"\nabove_dn = 199.5\n");
+  HostFrames const frames = with_mask(reference, flow, make_intensity_mask(199.5, {}, 0.0));
   EXPECT_TRUE(std::isnan(frames.flow()(3, 4)) && std::isnan(frames.reference()(20, 21)));
   EXPECT_TRUE(std::isnan(frames.reference()(9, 9)));
   EXPECT_DOUBLE_EQ(valid_pixel_fraction(frames), 1.0 - 3.0 / 1024.0);
-  EXPECT_DOUBLE_EQ(
-      valid_pixel_fraction(prepared(reference, flow, "[[correlate.mask]]\nkind = \"intensity\"\nbelow_dn = 500\n")),
-      0.0);
+  EXPECT_DOUBLE_EQ(valid_pixel_fraction(with_mask(reference, flow, make_intensity_mask({}, 500.0, 0.0))), 0.0);
 }
 
 // A Gaussian average of standard deviation sigma transmits exp(-2 pi^2 sigma^2/L^2) of a wave of length L; the
@@ -110,7 +96,7 @@ TEST(HighPass, LeavesOfAWaveWhatTheGaussianTakes) {
   for (double const length : {16.0, 64.0}) {
     Image<double> const wave =
         picture_of(128, [&](int i, int) { return 100.0 + 50.0 * std::sin(2.0 * pi * i / length); });
-    HostFrames const frames = prepared(wave, wave, "[[correlate.preprocess]]\nkind = \"high_pass\"\nsigma_px = 6\n");
+    HostFrames const frames = with_step(wave, wave, make_high_pass(6.0));
     double const left = 1.0 - std::exp(-2.0 * pi * pi * 36.0 / (length * length));
     for (int i = 40; i < 88; ++i)
       EXPECT_NEAR(frames.reference()(i, 60), left * 50.0 * std::sin(2.0 * pi * i / length), 0.1) << length;
@@ -120,9 +106,10 @@ TEST(HighPass, LeavesOfAWaveWhatTheGaussianTakes) {
 // Light under a mask has no effect: a uniform image remains uniform up to the edge of the mask.
 TEST(HighPass, LooksAtKnownPixelsAlone) {
   Image<double> const frame = picture_of(64, [](int i, int) { return i < 20 ? 4000.0 : 100.0; });
-  HostFrames const frames = prepared(frame, frame,
-                                     "[[correlate.mask]]\nkind = \"intensity\"\nabove_dn = 1000\n"
-                                     "[[correlate.preprocess]]\nkind = \"high_pass\"\n");
+  FramePreparation preparation;
+  preparation.masks.push_back(make_intensity_mask(1000.0, {}, 0.0));
+  preparation.steps.push_back(make_high_pass(10.0));
+  HostFrames const frames = prepare_frames(HostFrames(frame, frame), preparation);
   EXPECT_TRUE(std::isnan(frames.reference()(19, 5)));
   for (int i = 20; i < 64; ++i) EXPECT_NEAR(frames.reference()(i, 5), 0.0, 1e-9);
 }
@@ -131,8 +118,7 @@ TEST(HighPass, LooksAtKnownPixelsAlone) {
 TEST(IntensityCap, IsTheMedianAndSomeDeviations) {
   Image<double> frame(20, 20, 0.0);
   frame(5, 6) = 1000.0;
-  HostFrames const frames =
-      prepared(frame, frame, "[[correlate.preprocess]]\nkind = \"intensity_cap\"\ndeviations = 3\n");
+  HostFrames const frames = with_step(frame, frame, make_intensity_cap(3.0));
   EXPECT_NEAR(frames.flow()(5, 6), 3.0 * 1000.0 * std::sqrt(399.0) / 400.0, 1e-9);
   EXPECT_EQ(frames.flow()(0, 0), 0.0);
 }
@@ -142,12 +128,12 @@ TEST(LocalContrast, DoesNotDependOnTheLight) {
   ParticlePair const pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
   Image<double> bright = pair.flow;
   for (double& level : bright) level = 7.0 * level + 30.0;
-  for (auto const& [kind, tolerance] : {std::pair("min_max", 1e-12), std::pair("clahe", 700.0)}) {
-    HostFrames const frames =
-        prepared(pair.flow, bright, std::string("[[correlate.preprocess]]\nkind = \"") + kind + "\"\n");
+  for (auto const& [step, tolerance] :
+       {std::pair(make_min_max(15, 0.05), 1e-12), std::pair(make_clahe(64, 2.0), 700.0)}) {
+    HostFrames const frames = with_step(pair.flow, bright, step);
     for (int j = 0; j < 128; ++j)
       for (int i = 0; i < 128; ++i)
-        EXPECT_NEAR(frames.reference()(i, j), frames.flow()(i, j), tolerance) << kind << i << ' ' << j;
+        EXPECT_NEAR(frames.reference()(i, j), frames.flow()(i, j), tolerance) << i << ' ' << j;
   }
 }
 
@@ -168,11 +154,10 @@ TEST(LocalContrast, BringsUpWhatIsFaint) {
   ParticlePair pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
   for (int j = 0; j < 128; ++j)
     for (int i = 64; i < 128; ++i) pair.flow(i, j) /= 8.0;
-  for (char const* settings :
-       {"kind = \"min_max\"\nleast_contrast = 0.01", "kind = \"clahe\"\ntile_px = 32\nclip_limit = 20"}) {
-    HostFrames const frames =
-        prepared(pair.flow, pair.flow, std::string("[[correlate.preprocess]]\n") + settings + '\n');
-    EXPECT_GT(contrast_of(frames.flow(), 76, 128), 0.25 * contrast_of(frames.flow(), 0, 52)) << settings;
+  for (auto const& [name, step] :
+       {std::pair("min_max", make_min_max(15, 0.01)), std::pair("clahe", make_clahe(32, 20.0))}) {
+    HostFrames const frames = with_step(pair.flow, pair.flow, step);
+    EXPECT_GT(contrast_of(frames.flow(), 76, 128), 0.25 * contrast_of(frames.flow(), 0, 52)) << name;
   }
 }
 
@@ -184,7 +169,7 @@ TEST(Background, SubtractsStationaryBackground) {
   };
   ParticlePair const still = render_particle_pair({.seed = 99}, [](Vec2d) { return Vec2d{}; });
   std::string const folder = ::testing::TempDir();
-  std::string list;
+  std::vector<std::string> files[2];
   Image<double> first[2];
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     ParticlePair const dots = moved(seed, {2.0, -1.0});
@@ -196,9 +181,9 @@ TEST(Background, SubtractsStationaryBackground) {
         levels.data()[i] = static_cast<std::uint16_t>(
             std::lround((k == 0 ? dots.reference : dots.flow).data()[i] + 4.0 * still.reference.data()[i]));
       write_tiff(folder + names[k], levels, {});
+      files[k].push_back(folder + names[k]);
       if (seed == 1) first[k] = read_image(folder + names[k]);
     }
-    list += (list.empty() ? "" : ", ") + ("{ reference = \"" + names[0] + "\", flow = \"" + names[1] + "\" }");
   }
   CorrelationSettings settings;
   settings.window_px = {32};
@@ -211,9 +196,8 @@ TEST(Background, SubtractsStationaryBackground) {
   };
   EXPECT_NEAR(median_u(HostFrames(first[0], first[1])), 0.0, 0.1);
   for (char const* subtract : {"minimum", "mean", "median"}) {
-    std::string const table = std::string("[[correlate.preprocess]]\nkind = \"background\"\nsubtract = \"") + subtract +
-                              "\"\nframe = [" + list + "]\n";
-    EXPECT_NEAR(median_u(prepared(first[0], first[1], table)), 2.0, 0.05) << subtract;
+    HostFrames const frames = with_step(first[0], first[1], make_background_subtraction(subtract, files[0], files[1]));
+    EXPECT_NEAR(median_u(frames), 2.0, 0.05) << subtract;
   }
   for (int seed = 1; seed <= 6; ++seed)
     for (char const* frame : {"a", "b"})
@@ -228,8 +212,7 @@ TEST(Mask, LeavesTheOtherVectorsAsTheyAre) {
   settings.weighting = "uniform";
   DisplacementField const all = make_correlator(settings)->correlate(pair.reference, pair.flow);
   DisplacementField const some = make_correlator(settings)->correlate_pair(
-      prepared(pair.reference, pair.flow,
-               "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [-1, 99.5, 99.5, -1]\ny_px = [-1, -1, 300, 300]\n"));
+      with_mask(pair.reference, pair.flow, make_polygon_mask({{-1, -1}, {99.5, -1}, {99.5, 300}, {-1, 300}})));
   for (std::size_t i = 0; i < all.size(); ++i) {
     double const left = all.position_px[i].x - 15.5, share = std::clamp((100.0 - left) / 32.0, 0.0, 1.0);
     EXPECT_EQ(some.status[i] == VectorStatus::masked, share > 0.5) << left;
@@ -238,37 +221,6 @@ TEST(Mask, LeavesTheOtherVectorsAsTheyAre) {
       EXPECT_LT(length(some.raw_px[i] - all.raw_px[i]), 1e-4);
     }
   }
-}
-
-TEST(FramePreparation, SaysWhereItsSettingsAreWrong) {
-  EXPECT_EQ(problems_of("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [0, 1, 2]\ny_px = [0, 1, 2, 3]\n"),
-            "invalid_value at case.toml:4:1");
-  EXPECT_EQ(problems_of("[[correlate.mask]]\nkind = \"polygn\"\n"), "unknown_choice at case.toml:2:1");
-  EXPECT_EQ(problems_of("[[correlate.mask]]\nx_px = [0, 1, 2]\ny_px = [0, 1, 2]\n"), "missing_key at case.toml:1:1");
-  EXPECT_EQ(problems_of("[[correlate.mask]]\nkind = \"intensity\"\n"), "invalid_value at case.toml:2:1");
-  EXPECT_EQ(problems_of("[[correlate.mask]]\nkind = \"image\"\n"), "missing_key at case.toml:1:1");
-  EXPECT_EQ(problems_of("[[correlate.preprocess]]\nkind = \"background\"\n"), "missing_key at case.toml:1:1");
-  EXPECT_EQ(problems_of("[[correlate.preprocess]]\nkind = \"high_pass\"\nsigma_px = 0\n"),
-            "out_of_range at case.toml:3:1");
-}
-
-// The settings stored in vectors.h5 are a text with all defaults, which must be read back to the same settings.
-TEST(FramePreparation, ReadsBackWhatItUnderstood) {
-  auto const resolved = [](std::string const& text) {
-    SetupDocument document = SetupDocument::from_text(text, "case.toml", "/frames");
-    SetupTable correlate = document.root().table("correlate");
-    EXPECT_EQ(read_frame_preparation(correlate).files.size(), 5u);
-    document.finish();
-    return document.resolved();
-  };
-  std::string const once = resolved(
-      "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [1, 2, 3]\ny_px = [1, 5, 1]\n"
-      "[[correlate.mask]]\nkind = \"image\"\nfile = \"mask.tif\"\n"
-      "[[correlate.preprocess]]\nkind = \"background\"\n"
-      "frame = [{ reference = \"a.tif\", flow = \"b.tif\" }, { reference = \"c.tif\", flow = \"d.tif\" }]\n"
-      "[[correlate.preprocess]]\nkind = \"min_max\"\n");
-  EXPECT_THAT(once, HasSubstr("/frames/d.tif"));
-  EXPECT_EQ(resolved(once), once);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "render/base/error.h"
 #include "studies/benchmark/particle_pair.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/expect_warning.h"
 
 namespace gladstone {
 namespace {
@@ -107,8 +108,8 @@ TEST(EveryOpticalFlow, NamesSettingsThatItDoesNotHeed) {
     settings.least_peak_ratio = 1.2;
     auto const warnings = make_correlator(settings)->correlate(pair.reference, pair.flow).warnings;
     ASSERT_EQ(warnings.size(), 1u) << method;
-    EXPECT_NE(warnings[0].find("ignores correlate.subpixel, correlate.least_peak_ratio ("), std::string::npos)
-        << warnings[0];
+    EXPECT_THAT(warnings[0], Warns("ignored at correlate.method",
+                                   testing::HasSubstr(" correlate.subpixel, correlate.least_peak_ratio (")));
   }
 }
 

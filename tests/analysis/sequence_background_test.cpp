@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/preparation/frame_preparation.h"
+#include <memory>
+
+#include "analysis/preparation/frame_changes.h"
 #include "render/base/error.h"
 #include "tests/support/expect_error.h"
 
@@ -33,27 +35,17 @@ TEST(Background, IsTheStatisticOfEachPixel) {
   }
 }
 
-// Only the preparation of a sequence may omit the frames of a background. Its images are set afterwards.
+// A sequence computes its background after the preparation has been set up.
 TEST(Background, OfASequenceIsComputedByTheSequence) {
-  auto const read = [](PreparedSet set) {
-    SetupDocument document = SetupDocument::from_text(
-        "[[correlate.preprocess]]\nkind = \"background\"\nsubtract = \"median\"\n", "case.toml");
-    SetupTable correlate = document.root().table("correlate");
-    FramePreparation preparation = read_frame_preparation(correlate, set);
-    document.finish();
-    return preparation;
-  };
-  EXPECT_THROW(read(PreparedSet::pair), SetupError);
-  FramePreparation const preparation = read(PreparedSet::sequence);
-  ASSERT_EQ(preparation.backgrounds.size(), 1u);
-  SequenceBackground& background = *preparation.backgrounds.front();
-  EXPECT_EQ(background.statistic, "median");
+  auto const background = std::make_shared<SequenceBackground>();
+  FramePreparation preparation;
+  preparation.steps.push_back(make_background_subtraction(background));
   HostFrames const frames(Image<double>(4, 4, 9.0), Image<double>(4, 4, 7.0));
   EXPECT_THAT([&] { prepare_frames(frames, preparation); },
               ThrowsDataError(ErrorCode::wrong_shape, "correlate.preprocess"))
       << "without its images";
-  background.reference = Image<double>(4, 4, 2.0);
-  background.flow = Image<double>(4, 4, 3.0);
+  background->reference = Image<double>(4, 4, 2.0);
+  background->flow = Image<double>(4, 4, 3.0);
   HostFrames const prepared = prepare_frames(frames, preparation);
   EXPECT_EQ(prepared.reference()(1, 2), 7.0);
   EXPECT_EQ(prepared.flow()(1, 2), 4.0);

@@ -68,7 +68,7 @@ TEST(EverySubpixelFit, LetsPassesConverge) {
   for (std::string const& name : subpixel_fits()) {
     for (double const width : {0.7, 1.06, 1.5, 2.5}) {
       double const inverse = 1 / (width * width), step = 1e-3;
-      double const slope = subpixel_fit(name)(gaussian_patch(step, 0.0, inverse, 0.0, inverse)).x / step;
+      double const slope = subpixel_method(name).fit(gaussian_patch(step, 0.0, inverse, 0.0, inverse)).x / step;
       EXPECT_GT(slope, 0.05) << name << ' ' << width;
       EXPECT_LT(slope, 1.95) << name << ' ' << width;
     }
@@ -78,7 +78,7 @@ TEST(EverySubpixelFit, LetsPassesConverge) {
 // By symmetry the fit to a symmetric peak is 0.
 TEST(EverySubpixelFit, LeavesSymmetricPeaksWhereTheyAre) {
   for (std::string const& name : subpixel_fits()) {
-    PeakFit const fit = subpixel_fit(name)(gaussian_patch(0.0, 0.0, 0.5, 0.0, 0.8));
+    PeakFit const fit = subpixel_method(name).fit(gaussian_patch(0.0, 0.0, 0.5, 0.0, 0.8));
     EXPECT_NEAR(fit.x, 0.0, 1e-12) << name;
     EXPECT_NEAR(fit.y, 0.0, 1e-12) << name;
     EXPECT_NEAR(fit.log_rise, 0.0, 1e-12) << name;

@@ -19,7 +19,7 @@ struct SyntheticDot {
   double sigma_y = 0.75;
 };
 
-/// Light of a dot on a pixel.
+/// Returns the light of a dot on a pixel [grey levels].
 inline double light_on(SyntheticDot const& dot, int column, int row) {
   auto const share = [](double t, double sigma) {
     double const scale = std::sqrt(0.5) / sigma;
@@ -39,7 +39,7 @@ inline void add_dots(Image<double>& image, std::vector<SyntheticDot> const& dots
   }
 }
 
-/// Image of dots on a background, with normal noise and rounding to grey levels of 16 bits.
+/// Returns an image of dots on a background, with normal noise, rounded to grey levels of 16 bits.
 inline Image<double> dot_image(int side, std::vector<SyntheticDot> const& dots, double background, double noise,
                                KeyedEngine& random) {
   Image<double> image(side, side, background);
@@ -49,7 +49,7 @@ inline Image<double> dot_image(int side, std::vector<SyntheticDot> const& dots, 
   return image;
 }
 
-/// Random places in a square, no two closer than `apart`; fewer than asked for if they do not fit.
+/// Returns random places in a square, no two of them closer than `apart`; fewer than `count` if they do not fit.
 inline std::vector<Vec2d> random_places(std::size_t count, double side, double apart, KeyedEngine& random) {
   std::vector<Vec2d> places;
   for (int tries = 0; tries < 1000000 && places.size() < count; ++tries) {
@@ -66,7 +66,8 @@ struct MovedDots {
   Image<double> a, b;
 };
 
-/// Frames of dots at `places` in frame A that move by field(place) [px], with noise of 1 % of their height.
+/// Renders frames of dots that are at `places` in frame A and move by field(place) [px], with noise of 1 % of their
+/// height.
 template <class Field>
 MovedDots moved_dots(int side, std::vector<Vec2d> const& places, Field const& field, KeyedEngine& random) {
   std::vector<SyntheticDot> a, b;

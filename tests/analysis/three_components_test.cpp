@@ -52,7 +52,8 @@ class ThreeComponents : public FolderFixture {
     }
     return result;
   }
-  /// The same in a sheet at z = 0 and determined everywhere, as the readers of density and velocity fields require.
+  /// Returns field() in a sheet at z = 0 and determined everywhere, as the readers of density and velocity fields
+  /// require.
   static ThreeComponentField regular_field() {
     ThreeComponentField result = field();
     result.z_mm.assign(result.z_mm.size(), 0.0);

@@ -145,8 +145,9 @@ TEST(TrackEvidence, ChangesLittleInACoherentFlow) {
   }
 }
 
-// Of 1.5 spacings, two frames find the partners of 0.27 of the particles and four those of 0.75 (the table that
-// FindsPartnersWhoseNeighboursMoveDifferently prints). From images, too, four frames thus find more than twice as many.
+// For displacements of 1.5 spacings, two frames find the partners of 27 % of the particles and four frames those of 75
+// % (see the table printed by FindsPartnersWhoseNeighboursMoveDifferently). Four frames thus find more than twice as
+// many partners, from images as well.
 TEST(TrackEvidence, ServesImagesOfASequence) {
   Vortex const vortex{1.5 * spacing};
   FourFrames const frames = make_frames(vortex, 1);

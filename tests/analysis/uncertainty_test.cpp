@@ -375,13 +375,5 @@ TEST(UncertaintySettings, AreRecordedWithTheKeyThatSelectedTheMethod) {
   EXPECT_EQ(recorded(settings, sequence), "image_matching by correlate.uncertainty = \"image_matching\"");
 }
 
-TEST(UncertaintySettings, KnowTheMethodsOfTheTable) {
-  for (std::string const& method : uncertainty_methods()) {
-    SetupDocument document = SetupDocument::from_text("[correlate]\nuncertainty = \"" + method + "\"\n", "case.toml");
-    EXPECT_EQ(read_correlation_settings(document.root().table("correlate")).uncertainty, method);
-    EXPECT_FALSE(document.has_problems());
-  }
-}
-
 }  // namespace
 }  // namespace gladstone

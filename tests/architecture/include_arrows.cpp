@@ -107,7 +107,7 @@ std::vector<Room> const& table() {
       {"studies/compare", libraries + Names{"studies/drawing", "studies/case"}, studies_use, {}},
       {"studies/sweep", libraries + Names{"studies/case", "studies/compare"}, studies_use, {}},
       {"studies/design",
-       libraries + Names{"studies/drawing", "studies/case", "studies/compare", "studies/sweep"},
+       libraries + Names{"studies/case", "studies/compare", "studies/sweep"},
        studies_use,
        {"Ceres", "NLopt"}},
       {"studies/figures",
@@ -134,24 +134,6 @@ std::vector<Room> const& table() {
   };
   return rooms;
 }
-
-}  // namespace
-
-std::vector<Exception> const& known_exceptions() {
-  static std::vector<Exception> const list = {
-      {"analysis/correlation/correlation_settings.h", "render/setup/setup_table.h"},
-      {"analysis/preparation/frame_preparation.h", "render/setup/setup_table.h"},
-      {"render/setup/setup_document.cpp", "render/files/text_file.h"},
-      {"studies/compare/comparison_results.cpp", "studies/figures/error_figures.h"},
-      {"studies/compare/comparison_results.cpp", "studies/figures/map_figures.h"},
-      {"studies/design/design.cpp", "studies/figures/design_map.h"},
-      {"studies/design/design.cpp", "studies/figures/layout_figure.h"},
-      {"studies/design/design.cpp", "studies/figures/piv_map.h"},
-  };
-  return list;
-}
-
-namespace {
 
 struct LibraryPattern {
   std::string library;
@@ -285,6 +267,15 @@ std::string room_of(std::string_view path) {
   return path.starts_with("tests/") ? "tests" : "";
 }
 
+std::map<std::string, std::set<std::string>> permitted_rooms() {
+  std::map<std::string, std::set<std::string>> permitted;
+  for (Room const& room : table()) {
+    permitted[room.name].insert(room.rooms.begin(), room.rooms.end());
+    permitted[room.name].erase(room.name);
+  }
+  return permitted;
+}
+
 std::string library_of(std::string_view header) {
   for (LibraryPattern const& known : known_libraries()) {
     if (std::regex_match(header.begin(), header.end(), std::regex(known.header))) return known.library;
@@ -292,8 +283,7 @@ std::string library_of(std::string_view header) {
   return "";
 }
 
-std::vector<std::string> forbidden_arrows(std::string const& path, std::string_view source,
-                                          std::vector<Exception> const& exceptions) {
+std::vector<std::string> forbidden_arrows(std::string const& path, std::string_view source) {
   std::vector<std::string> faults;
   std::string const name = room_of(path);
   auto const room = std::find_if(table().begin(), table().end(), [&](Room const& r) { return r.name == name; });
@@ -309,10 +299,6 @@ std::vector<std::string> forbidden_arrows(std::string const& path, std::string_v
   }
   if (room == table().end()) return {path + ": lies in no room"};
   for (Include const& include : includes_of(source)) {
-    bool const excepted = std::any_of(exceptions.begin(), exceptions.end(), [&](Exception const& exception) {
-      return include.quoted && exception.file == path && exception.target == include.target;
-    });
-    if (excepted) continue;
     std::string const what = fault(*room, path, include);
     if (!what.empty()) faults.push_back(path + ":" + std::to_string(include.line) + ": " + what);
   }

@@ -10,13 +10,13 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 namespace gladstone::architecture {
 namespace {
 
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -141,6 +141,8 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"studies/compare/a.h", "\"studies/figures/b.h\""},
         Planted{"studies/sweep/a.cpp", "\"studies/figures/b.h\""},
         Planted{"studies/design/a.cpp", "\"studies/figures/b.h\""},
+        Planted{"studies/design/a.cpp", "\"studies/drawing/b.h\""},
+        Planted{"analysis/preparation/a.h", "\"render/setup/b.h\""},
         Planted{"studies/figures/a.cpp", "\"studies/report/b.h\""},
         Planted{"studies/oracles/a.cpp", "\"studies/compare/b.h\""},
         Planted{"studies/report/a.cpp", "\"studies/examples/b.h\""},
@@ -178,23 +180,46 @@ TEST(Tree, HasOnlyTheArrowsOfTheTable) {
   EXPECT_GT(includes, files.size());
 }
 
-// An exception that is no longer needed must be removed from the list, and the limit lowered with it. The limit is the
-// length of the list: 8 since `studies/drawing` may be included where three exceptions were needed before.
-TEST(Tree, NeedsEveryExceptionToTheTable) {
-  EXPECT_LE(known_exceptions().size(), 8U);
-  for (Exception const& exception : known_exceptions()) {
-    std::ifstream in(std::filesystem::path(GLADSTONE_SOURCE_DIR) / exception.file);
-    std::string const text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    EXPECT_THAT(forbidden_arrows(exception.file, text, {}), Contains(HasSubstr('"' + exception.target + '"')))
-        << exception.file;
+// The rooms that a target links (DEPENDS of gladstone_room()) are those that its folder may include. Rooms without a
+// target of their own are loaded at run time (image_codecs), or link gladstone::studies (the program, the Python
+// module); without nvcc the folders of cuda/ are not built.
+TEST(Tree, LinksTheRoomsOfTheTable) {
+  std::map<std::string, std::string> folders;
+  std::map<std::string, std::vector<std::string>> linked;  // targets by folder
+  std::ifstream in(GLADSTONE_ROOM_DESCRIPTIONS);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string target, folder;
+    words >> target >> folder;
+    folders[target] = folder;
+    linked[folder].assign(std::istream_iterator<std::string>(words), {});
   }
+  bool const with_cuda = linked.count("cuda/device") > 0;
+  for (auto const& [room, permitted] : permitted_rooms()) {
+    if (room == "render/image_codecs" || room == "python/src" || room == "studies") continue;
+    if (room.starts_with("cuda/") && !with_cuda) continue;
+    ASSERT_TRUE(linked.count(room) > 0) << room << " is no target";
+    std::set<std::string> expected = permitted, found;
+    if (!with_cuda) std::erase_if(expected, [](std::string const& one) { return one.starts_with("cuda/"); });
+    for (std::string const& target : linked[room]) found.insert(folders[target]);
+    EXPECT_EQ(found, expected) << "DEPENDS in " << room << "/CMakeLists.txt";
+    linked.erase(room);
+  }
+  for (auto const& [folder, targets] : linked) ADD_FAILURE() << folder << " is no room of the table";
 }
 
-TEST(IncludeArrows, PermitExceptionsInTheirFileOnly) {
-  std::string const source = "#include \"render/medium/b.h\"\n";
-  EXPECT_THAT(forbidden_arrows("render/light/a.h", source, {{"render/light/a.h", "render/medium/b.h"}}), IsEmpty());
-  EXPECT_THAT(forbidden_arrows("render/light/c.h", source, {{"render/light/a.h", "render/medium/b.h"}}),
-              ElementsAre(HasSubstr("render/light/c.h:1: ")));
+// <nlohmann/json.hpp> takes a second to compile: a header includes json_fwd.hpp. These hold JSON values, for the
+// reasons that CONTRIBUTING.md states.
+TEST(Tree, IncludesJsonInSourceFilesOnly) {
+  std::set<std::string> const holders{"studies/case/render_setup.h", "studies/report/report_page.h"};
+  std::set<std::string> including;
+  for (SourceFile const& file : sources_of({"render", "analysis", "cuda", "studies", "python"})) {
+    if (file.path.ends_with(".cpp") || file.path.ends_with(".cu")) continue;
+    for (Include const& include : includes_of(file.text))
+      if (include.target.starts_with("nlohmann/") && include.target != "nlohmann/json_fwd.hpp")
+        including.insert(file.path);
+  }
+  EXPECT_EQ(including, holders);
 }
 
 TEST(Tree, DescribesEveryRoomInAShortReadme) {

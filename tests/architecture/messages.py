@@ -1,5 +1,5 @@
 """Lists what the program may tell a user: tests/architecture/messages.txt holds the text of every error and warning of
-the sources, and docs/reference/errors.md the error codes. Both are generated, so that a change of a message is seen in
+the sources, and docs/reference/errors.md the codes of errors and warnings. Both are generated, so that a change of a message is seen in
 review as a change of one line. Without arguments, compares; with --renew, writes both files.
 """
 
@@ -22,8 +22,8 @@ CALLS = re.compile(
     r"\b(?:(?P<data>DataError)|(?P<output>OutputError)|(?P<device>DeviceError|OutOfDeviceMemory)"
     r"|(?P<interrupted>Interrupted)|(?P<other>refuse|fail|add_problem)|(?P<experiment>require_experiment)"
     r"|(?P<problem>(?<=\.)problem|(?<=problems\.)push_back|(?<=problems_\.)push_back)"
-    r"|(?P<warning>warn|note_once|(?<=warnings\.)push_back|(?<=warnings_\.)push_back|(?<=notes\.)push_back"
-    r"|(?<=notes_\.)push_back))\s*[({]"
+    r"|(?P<warning>warn|log_warning|note_once|(?<=return )Warning|(?<=warnings\.)push_back|(?<=warnings_\.)push_back"
+    r"|(?<=notes\.)push_back|(?<=notes_\.)push_back))\s*[({]"
 )
 DEFAULT_CODE = {
     "data": "-", "output": "output", "device": "device", "interrupted": "interrupted", "other": "-",
@@ -96,8 +96,9 @@ def messages(source: str) -> list[str]:
         arguments, text = read_until(source, call.end())
         if " " not in text.strip():
             continue  # the text is made elsewhere, or the call is a declaration
-        code = re.search(r"ErrorCode::(\w+)", arguments)
-        found.add(f"{code[1] if code else DEFAULT_CODE[call.lastgroup]}: {' '.join(text.split())}")
+        code = re.search(r"(Error|Warning)Code::(\w+)", arguments)
+        name = ("warning " if code[1] == "Warning" else "") + code[2] if code else DEFAULT_CODE[call.lastgroup]
+        found.add(f"{name}: {' '.join(text.split())}")
     return sorted(found)
 
 
@@ -111,19 +112,24 @@ def all_messages() -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def code_table() -> str:
-    """Returns the table of error codes, from the comments of the enumeration."""
-    header = (ROOT / "render/base/error.h").read_text()
-    enumeration = header[header.index("enum class ErrorCode") :]
+def code_table(kind: str) -> str:
+    """Returns the table of the codes of "error" or "warning", from the comments of the enumeration."""
+    header = (ROOT / f"render/base/{kind}.h").read_text()
+    enumeration = header[header.index(f"enum class {kind.title()}Code") :]
     enumeration = enumeration[: enumeration.index("};")]
     rows = re.findall(r"^\s*(\w+),\s*///< (.*)$", enumeration, re.MULTILINE)
     return TABLE_HEAD + "".join(f"| `{name}` | {meaning} |\n" for name, meaning in rows)
 
 
-def with_table(page: str) -> str:
-    """Returns a page with its table of codes replaced by the present one."""
-    start = page.index(TABLE_HEAD)
-    return page[:start] + code_table() + page[page.index("\n\n", start) + 1 :]
+def with_tables(page: str) -> str:
+    """Returns a page with its tables of codes, those of errors first, replaced by the present ones."""
+    end = 0
+    for kind in ("error", "warning"):
+        start = page.index(TABLE_HEAD, end)
+        table = code_table(kind)
+        page = page[:start] + table + page[page.index("\n\n", start) + 1 :]
+        end = start + len(table)
+    return page
 
 
 def self_test() -> None:
@@ -133,6 +139,8 @@ def self_test() -> None:
     assert messages(one_line) == messages(wrapped) == ['damaged: is "cut" short; copy it'], messages(wrapped)
     joined = 'table.problem("key", "is " + f(")", 1) + " m long", ErrorCode::out_of_range); warn("a {}" " b", c);'
     assert messages(joined) == ["out_of_range: key...is ...)... m long", "warning: a {} b"], messages(joined)
+    warned = 'warn(all, {WarningCode::ignored, "lens.file", f("line {} is " "not used", n)});'
+    assert messages(warned) == ["warning ignored: lens.file...line {} is not used"], messages(warned)
     assert messages('DataError(ErrorCode code, std::string const& file) {}; OutputError(p, "is a file");') == [
         "output: is a file"
     ]
@@ -147,7 +155,7 @@ def main() -> int:
     self_test()
     outdated = 0
     page = (ROOT / CODES).read_text()
-    for name, content in ((LIST, all_messages()), (CODES, with_table(page))):
+    for name, content in ((LIST, all_messages()), (CODES, with_tables(page))):
         path = ROOT / name
         stored = path.read_text() if path.exists() else ""
         if renew:

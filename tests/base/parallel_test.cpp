@@ -13,7 +13,7 @@
 namespace gladstone {
 namespace {
 
-/// Resident memory of this process [bytes].
+/// Returns the resident memory of this process [bytes].
 long resident_bytes() {
   long total = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> total >> resident;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "tests/support/poisson_variate.h"
+
 namespace gladstone {
 namespace {
 

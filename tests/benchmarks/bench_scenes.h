@@ -10,16 +10,13 @@
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
 #include "render/optics/prescription.h"
-#include "render/rays/ray_planning.h"
-#include "render/scene/scene.h"
+#include "tests/scene/planned_scene.h"
 
 namespace gladstone::bench {
 
-/// Width of the demo's field at the medium [m].
+/// Width of the density field of the demo [m].
 inline constexpr double volume_width = 32.7e-3;
 inline constexpr double ambient_refractivity = 2.26e-4 * 1.225;
-
-inline void plan_step(Scene& scene) { scene = with_step(scene, determine_step_by_tracing(scene)); }
 
 /// A seeded smooth refractivity that varies along all three axes, over five to ten cells of a 64^3 grid.
 inline double smooth_refractivity(Vec3d p, unsigned seed) {
@@ -35,13 +32,13 @@ inline double smooth_refractivity(Vec3d p, unsigned seed) {
 
 /// Table 1 with no medium yet and `per_side`^2 dots of 3 px on a square lattice whose rays all cross the volume from
 /// face to face, or 0: its own random dots, 20 a window of 32 px; a fixed number of rays per dot.
-inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
+inline PlannedScene table1_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
   Setup setup;
   setup.camera.columns = setup.camera.rows = pixels;
   setup.target.kind = TargetKind::dots;
   setup.target.dots_per_32px_window = per_side > 0 ? 1 : 20;
-  Scene scene = build_scene(setup);
-  scene.setup.render.rays_per_dot = scene.rays_per_dot = rays_per_dot;
+  PlannedScene scene(build_scene(setup));
+  scene.setup.render.rays_per_dot = scene.plan.rays = rays_per_dot;
   if (per_side == 0) return scene;
   double const edge = 36.0, pitch = (setup.camera.columns - 1 - 2 * edge) / (per_side - 1);
   scene.dots.centre.clear();
@@ -55,9 +52,9 @@ inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot, int pixels =
 enum class Interpolate { spline, linear };
 
 /// Table 1 through a cube of nodes^3, 32.7 mm wide, RK4 with steps of one cell.
-inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot,
-                          Interpolate interpolate = Interpolate::spline) {
-  Scene scene = table1_scene(per_side, rays_per_dot);
+inline PlannedScene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot,
+                                 Interpolate interpolate = Interpolate::spline) {
+  PlannedScene scene = table1_scene(per_side, rays_per_dot);
   RegularGrid grid;
   grid.nodes = {nodes, nodes, nodes};
   double const cell = volume_width / (nodes - 1);
@@ -93,8 +90,8 @@ inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot,
 }
 
 /// Table 1 through the late DNS plane, stacked over 10 mm as in the demo.
-inline Scene plane_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
-  Scene scene = table1_scene(per_side, rays_per_dot, pixels);
+inline PlannedScene plane_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
+  PlannedScene scene = table1_scene(per_side, rays_per_dot, pixels);
   MediumSetup& medium = scene.setup.medium;
   medium.field.kind = FieldKind::file;
   medium.field.file = std::string(GLADSTONE_DATA_DIR) + "/fields/hbdt512_late_slice.h5";
@@ -109,7 +106,7 @@ inline Scene plane_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 
   return scene;
 }
 
-/// Table 1 with the double Gauss of data/lenses in place of its lens.
+/// Returns the setup of Table 1 with the double Gauss of data/lenses as its lens.
 inline Setup double_gauss_setup() {
   Setup setup;
   LensOptions options;
@@ -124,22 +121,22 @@ inline Setup double_gauss_setup() {
 
 /// Point sources out of focus by 2 px, 10,000 rays each, no medium.
 /// @param dots_per_window of 32 x 32 px
-inline Scene points_scene(Setup setup, double dots_per_window = 1) {
+inline PlannedScene points_scene(Setup setup, double dots_per_window = 1) {
   setup.target.kind = TargetKind::dots;
   setup.target.dots_per_32px_window = dots_per_window;
   setup.target.dot_diameter_px = 0;
   setup.lens.focus = Focus::distance;
-  // a defocus of 2 px: the cone's width at the sensor, d_A |z_i - z| / z, see physics of a point out of focus
+  // Defocus of 2 px: width of the cone at the sensor, d_A |z_i - z| / z.
   setup.lens.focus_distance = setup.z_b() * (1 - 0.0168);
-  Scene scene = build_scene(setup);
-  scene.rays_per_dot = 10000;
-  scene.step = setup.medium.thickness;
+  PlannedScene scene(build_scene(setup));
+  scene.plan.rays = 10000;
+  scene.plan.step = setup.medium.thickness;
   return scene;
 }
 
 /// Returns straight rays from every `every`-th dot of a scene to the pupil.
-inline std::vector<Ray<double>> rays_of_dots(Scene const& scene, std::size_t every, int rays_a_dot) {
-  FocusedSetupView const bench = focused_dots(scene).value().bench();
+inline std::vector<Ray<double>> rays_of_dots(PlannedScene const& scene, std::size_t every, int rays_a_dot) {
+  FocusedSetupView const bench = focused_dots(scene, scene.plan).value().bench();
   BundleView choice;
   choice.scrambling_bits = scrambling_bits(static_cast<std::uint64_t>(rays_a_dot));
   std::vector<Ray<double>> rays;
@@ -155,8 +152,8 @@ inline std::vector<Ray<double>> rays_of_dots(Scene const& scene, std::size_t eve
 }
 
 /// The rays of a scene where they enter the volume.
-inline std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<double> const& volume) {
-  std::vector<Ray<double>> rays = rays_of_dots(scene, 1, static_cast<int>(scene.rays_per_dot));
+inline std::vector<Ray<double>> entering_rays(PlannedScene const& scene, SplineVolume<double> const& volume) {
+  std::vector<Ray<double>> rays = rays_of_dots(scene, 1, static_cast<int>(scene.plan.rays));
   for (Ray<double>& start : rays) {
     start.position += start.direction * ((volume.box.low.z - start.position.z) / start.direction.z);
   }
@@ -164,13 +161,13 @@ inline std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<d
 }
 
 /// Rays of a rendering in one frame.
-inline double rays_of(Scene const& scene) {
-  return static_cast<double>(scene.dots.centre.size()) * static_cast<double>(scene.rays_per_dot);
+inline double rays_of(PlannedScene const& scene) {
+  return static_cast<double>(scene.dots.centre.size()) * static_cast<double>(scene.plan.rays);
 }
 /// RK4 steps that they take, but for their slant (below 0.1 %).
-inline double steps_of(Scene const& scene) {
+inline double steps_of(PlannedScene const& scene) {
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
-  return rays_of(scene) * std::round((box.high.z - box.low.z) / scene.step);
+  return rays_of(scene) * std::round((box.high.z - box.low.z) / scene.plan.step);
 }
 
 }  // namespace gladstone::bench

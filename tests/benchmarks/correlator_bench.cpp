@@ -7,7 +7,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// Vectors per second on a pair of 1024 x 1024 px with 20 particles a 32 px window and a smooth displacement.
+/// Measures vectors per second for a pair of 1024 x 1024 px with 20 particles per window of 32 px and a smooth
+/// displacement.
 void correlate(benchmark::State& state, CorrelationSettings const& settings) {
   static ParticlePair const pair = [] {
     ParticleSettings particles;

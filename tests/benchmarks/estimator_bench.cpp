@@ -11,16 +11,16 @@
 namespace gladstone::bench {
 namespace {
 
-/// Reports the errors of vectors at least 32 px from the border: rms and bias per component, the fraction of the
-/// displacement that they reach, the number above 1 px, and the coverage of sigma.
+/// Reports the errors of vectors at least 32 px from the border: rms and bias per component, the gain (fraction of the
+/// displacement that the vectors follow), the number of errors above 1 px, and the coverage of sigma.
 void report_errors(benchmark::State& state, DisplacementField const& field, BenchmarkCase const& one) {
   int const columns = one.particles.columns, rows = one.particles.rows;
   std::vector<Vec2d> const truth = truth_at_vectors(field, one.flow);
   BenchmarkScore const score = score_vectors(field, truth, columns, rows);
-  state.counters["rms_mpx"] = 1e3 * score.errors.rms_px;
-  state.counters["bias_mpx"] = 1e3 * score.errors.bias_u_px;
+  state.counters["rms_mpx"] = 1e3 * score.errors["rms_px"];
+  state.counters["bias_mpx"] = 1e3 * score.errors["bias_u_px"];
   state.counters["gain"] = score.gain;
-  state.counters["gross"] = static_cast<double>(score.gross);
+  state.counters["gross"] = score.errors["gross"];
   if (field.sigma_px.empty()) return;
   UncertaintyQuality const quality =
       uncertainty_quality(field.displacement_px, truth, field.sigma_px, benchmark_mask(field, columns, rows));

@@ -6,9 +6,9 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/ideal_images/ideal_images.h"
-#include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/sensor/detector.h"
+#include "tests/scene/planned_scene.h"
 #include "tests/support/ideal_pairs.h"
 
 namespace gladstone::bench {
@@ -17,18 +17,20 @@ namespace {
 enum class Record { no, yes };
 
 Rendering render_pair(Setup const& setup) {
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   if (auto const ideal = ideal_images(scene);
       ideal && setup.piv->particles.scattering == ParticleScattering::gaussian) {
     return render_ideal_images(*ideal, scene.particles, ParticleLight::scattered, RenderImages::in_place);
   }
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
-  return RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::in_place);
+  plan_step(scene);
+  scene.plan = plan_rays_by_tracing(scene, scene.plan);
+  return RaysRenderer().render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered,
+                                         RenderImages::in_place);
 }
 
-/// Pairs of other particles every time, seeded, moved, lit and drawn, with their truth; nothing is written.
-/// @param record whether a camera of 12 bits records them, with shot and read noise
+/// Renders pairs with new particles each time: seeds, moves, illuminates and draws them, and computes their truth. No
+/// files are written.
+/// @param record  whether a camera of 12 bits records the images, with shot and read noise
 void pairs(benchmark::State& state, Setup setup, Record record) {
   Progress::enable(false);
   set_thread_count(static_cast<int>(state.range(0)));

@@ -13,10 +13,10 @@
 namespace gladstone::bench {
 namespace {
 
-/// Sobol points, sines and a square root or two: a ray as it leaves its dot.
+/// Measures the emission of rays from a dot: Sobol points, sines and square roots.
 void emit_rays(benchmark::State& state) {
-  Scene const scene = table1_scene(8, 64);
-  RaysLaunch const launch(scene, SpotView{});
+  PlannedScene const scene = table1_scene(8, 64);
+  RaysLaunch const launch(scene, scene.plan, SpotView{});
   LambertSources<double> const lambert{scene.dots.view(-scene.setup.z_d)};
   AimedBundle<double> const bundle = launch.bundle(*launch.sight(lambert.middle(0)), {{}, {}, lambert.reach()}, 0);
   std::uint64_t ray = 0;
@@ -28,7 +28,8 @@ void emit_rays(benchmark::State& state) {
 }
 BENCHMARK(emit_rays);
 
-/// One axis of one ray's light on the sensor, at Table 1's spot.
+/// Measures the distribution of one ray's light over the pixels along one axis, for the point spread function of Table
+/// 1.
 void spread_over_pixels(benchmark::State& state) {
   GaussianSpot<double> const spot{0.275};
   int const width = 2 * spot.half_width() + 1;
@@ -44,9 +45,9 @@ void spread_over_pixels(benchmark::State& state) {
 }
 BENCHMARK(spread_over_pixels);
 
-/// One ray's light gathered around its dot.
+/// Measures the accumulation of one ray's light in the stamp of its dot.
 void deposit_spot(benchmark::State& state) {
-  Scene const scene = table1_scene(2, 64);
+  PlannedScene const scene = table1_scene(2, 64);
   std::optional<AiryTable> airy;
   LightPatch patch(make_spot(scene, airy));
   double p = 99.0;
@@ -60,7 +61,7 @@ void deposit_spot(benchmark::State& state) {
 }
 BENCHMARK(deposit_spot);
 
-/// Refractivity and gradient at points one after another, each hanging on the last.
+/// Measures refractivity and gradient at successive points, each of which depends on the result at the previous one.
 template <class Medium>
 void sample_in_a_row(benchmark::State& state, Medium const& medium, Vec3d start, Vec3d stride) {
   Vec3d p = start;
@@ -78,22 +79,22 @@ void sample_in_a_row(benchmark::State& state, Medium const& medium, Vec3d start,
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 void sample_volume(benchmark::State& state) {
-  Scene const scene = volume_scene(64, 2, 1);
+  PlannedScene const scene = volume_scene(64, 2, 1);
   sample_in_a_row(state, std::get<SplineVolume<double>>(scene.medium.view), {1e-3, 2e-3, -16e-3}, {0, 0, 0.5e-3});
 }
 BENCHMARK(sample_volume);
 void sample_plane(benchmark::State& state) {
-  Scene const scene = plane_scene(2, 1);
+  PlannedScene const scene = plane_scene(2, 1);
   sample_in_a_row(state, std::get<SplinePlane<double>>(scene.medium.view), {1e-3, 2e-3, -4e-3}, {2e-5, 1e-5, 0.1e-3});
 }
 BENCHMARK(sample_plane);
 
-/// Rays through a 64^3 volume, nothing else.
+/// Measures only the tracing of rays through a 64^3 volume.
 void trace_volume(benchmark::State& state) {
-  Scene const scene = volume_scene(64, 32, 64);
+  PlannedScene const scene = volume_scene(64, 32, 64);
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::vector<Ray<double>> const rays = rays_of_dots(scene, 7, 1);
-  TracingOptions<double> const tracing = focused_dots(scene).value().bench().tracing;
+  TracingOptions<double> const tracing = focused_dots(scene, scene.plan).value().bench().tracing;
   std::size_t next = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(trace_medium(volume, tracing, rays[next]));
@@ -104,13 +105,13 @@ void trace_volume(benchmark::State& state) {
 }
 BENCHMARK(trace_volume);
 
-/// Traces several rays at once through a volume.
+/// Measures the tracing of several rays together through a volume.
 template <int N>
 void trace_volume_together(benchmark::State& state) {
-  Scene const scene = volume_scene(64, 32, 64);
+  PlannedScene const scene = volume_scene(64, 32, 64);
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::vector<Ray<double>> const all = rays_of_dots(scene, 7, N);
-  TracingOptions<double> const tracing = focused_dots(scene).value().bench().tracing;
+  TracingOptions<double> const tracing = focused_dots(scene, scene.plan).value().bench().tracing;
   std::size_t bundle = 0;
   for (auto _ : state) {
     Ray<double> rays[N];

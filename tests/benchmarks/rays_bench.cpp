@@ -12,20 +12,21 @@ namespace {
 
 /// Points out of focus by 2 px, seen by the general renderer: one ray is one ray in one frame, and the light of every
 /// ray is laid down. No medium.
-void render_points_by_rays(benchmark::State& state, Scene scene) {
+void render_points_by_rays(benchmark::State& state, PlannedScene scene) {
   Progress::enable(false);
   set_thread_count(static_cast<int>(state.range(0)));
   double fastest = 1e300;
   for (auto _ : state) {
     auto const start = std::chrono::steady_clock::now();
-    Rendering const rendering = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+    Rendering const rendering =
+        RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no);
     double const taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
     fastest = std::min(fastest, taken);
     state.SetIterationTime(taken);
   }
   set_thread_count(0);
-  double const rays = 2.0 * static_cast<double>(scene.dots.centre.size() * scene.rays_per_dot);
+  double const rays = 2.0 * static_cast<double>(scene.dots.centre.size() * scene.plan.rays);
   state.counters["rays/s"] = rays / fastest;
 }
 

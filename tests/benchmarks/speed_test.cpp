@@ -51,16 +51,19 @@ double measure_ratio(std::function<void()> const& plain, std::function<void()> c
 constexpr double rays_ratio = 2.2, correlation_ratio = 25, images_ratio = 25, slower = 1.2;
 
 TEST(Speed, OfRaysThroughAVolume) {
-  Scene const scene = volume_scene(64, 16, 64);
+  PlannedScene const scene = volume_scene(64, 16, 64);
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::vector<Ray<double>> const rays = entering_rays(scene, volume);
-  int const steps = static_cast<int>(std::lround(volume_width / scene.step));
+  int const steps = static_cast<int>(std::lround(volume_width / scene.plan.step));
   double sum = 0;
   double const ratio = measure_ratio(
       [&] {
-        for (Ray<double> const& ray : rays) sum += plain_steps(volume, ray, scene.step, steps).position.x;
+        for (Ray<double> const& ray : rays) sum += plain_steps(volume, ray, scene.plan.step, steps).position.x;
       },
-      [&] { sum += RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light.flow(0, 0); },
+      [&] {
+        sum +=
+            RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no).light.flow(0, 0);
+      },
       rays_ratio);
   EXPECT_GT(ratio, rays_ratio / slower);
   EXPECT_TRUE(std::isfinite(sum));
@@ -88,7 +91,7 @@ TEST(Speed, OfTheCorrelationOfWindows) {
 
 TEST(Speed, OfParticleImagesByFormula) {
   auto const setup = test::pair_setup(ParticleScattering::gaussian, 512, 512);
-  Scene const scene = build_scene(setup);
+  PlannedScene const scene(build_scene(setup));
   auto const ideal = ideal_images(scene);
   ASSERT_TRUE(ideal);
   std::vector<Vec2d> places;

@@ -10,7 +10,7 @@
 namespace gladstone::bench {
 namespace {
 
-/// Number of cases from which a study is only run if the filter names it, since it takes minutes and gigabytes.
+/// Number of cases from which a study is run only if the filter names it, since it requires minutes and gigabytes.
 constexpr std::size_t on_request = 100000;
 /// Space on the disk for the result of a case: errors of 1024 vectors against three references, to compare repeats, are
 /// 41 kB of text; the rest are 98 measures [bytes].
@@ -48,7 +48,7 @@ void study_without_work(benchmark::State& state) {
     };
     measure("plan", [&] { study.plan(); });
     measure("run", [&] { study.run(); });
-    measure("resume", [&] { study.run(); });  // nothing is left to compute
+    measure("resume", [&] { study.run(); });  // all cases are complete
     measure("collect", [&] { study.collect(); });
     if (!study.complete()) state.SkipWithError("the study is incomplete");
   }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# reports.sh PROGRAM FOLDER SOURCE: makes a study and a case in FOLDER, writes their reports beside blanks and letters that
+# reports.sh PROGRAM FOLDER SOURCE: makes a study and a case in FOLDER, writes their reports into paths with blanks and letters that
 # are no ASCII, has tidy check the HTML and Chromium read it. 77: neither is installed.
 set -eu
 program=$1 folder=$2 source=$3

@@ -17,7 +17,7 @@ namespace gladstone {
 
 using BosSetup = Setup;  // testing::Test has a member named Setup
 
-/// A grey level of 16 bits if the brightest pixel of a frame is at 90 % of full scale.
+/// Returns the light of one grey level of 16 bits, if the brightest pixel of a frame is at 90 % of full scale.
 inline double grey_level(Image<double> const& frame) {
   return *std::max_element(frame.begin(), frame.end()) / (0.9 * 65535);
 }
@@ -72,7 +72,7 @@ struct FocusedDotsMethod {
 struct RaysMethod {
   static RaysRenderer on_cpu() { return {}; }
   static std::unique_ptr<Renderer> on_device() { return cuda::make_rays_renderer(); }
-  /// the device accumulates hits in integers
+  /// Tolerance of the images [levels of 16 bits]; not zero, since the device accumulates hits in integers.
   static constexpr double levels = 1;
 };
 
@@ -84,18 +84,18 @@ class OnBothDevices : public testing::Test {
     if (!cuda::device_state().usable) GTEST_SKIP() << cuda::device_state().text;
     renderer_ = Method::on_device();
   }
-  Rendering on_device(Scene const& scene) {
-    return renderer_->render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  Rendering on_device(PlannedScene const& scene) {
+    return renderer_->render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::yes);
   }
 
   /// The results of the device must equal those of the CPU: truth and theory to 1e-9 px, images to a fraction of a grey
   /// level, counts exactly. Scenes that the fast renderer does not support are compared by the test of the general
   /// renderer.
-  void expect_as_on_cpu(Scene scene) {
-    if (std::is_same_v<Method, FocusedDotsMethod> && !focused_dots(scene)) {
+  void expect_as_on_cpu(PlannedScene scene) {
+    if (std::is_same_v<Method, FocusedDotsMethod> && !focused_dots(scene, scene.plan)) {
       GTEST_SKIP() << "the fast renderer does not support this scene; the test of the general renderer compares it";
     }
-    Rendering const cpu = on_cpu_.render(scene, scene.dots, RenderImages::yes, RenderTheory::yes),
+    Rendering const cpu = on_cpu_.render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::yes),
                     gpu = on_device(scene);
     EXPECT_LT(largest_difference(cpu.truth.displacement_px, gpu.truth.displacement_px), 1e-9);
     EXPECT_LT(largest_difference(cpu.truth.reference_px, gpu.truth.reference_px), 1e-9);
@@ -118,12 +118,13 @@ class OnBothDevices : public testing::Test {
     EXPECT_LT(largest_difference(cpu.light.flow, gpu.light.flow), Method::levels * level);
   }
 
-  Scene scene_of(FieldSetup const& field, std::uint64_t rays, std::function<void(BosSetup&)> const& change = {}) {
+  PlannedScene scene_of(FieldSetup const& field, std::uint64_t rays,
+                        std::function<void(BosSetup&)> const& change = {}) {
     BosSetup setup = table1_setup(96);
     setup.medium.field = field;
     if (change) change(setup);
     std::vector<Vec2d> places = lattice(96, 6, 14);
-    // away from pixel edges, where rounding changes the footprint of a PSF
+    // Move the dots away from pixel edges, where rounding changes the footprint of a PSF.
     for (Vec2d& place : places) place += {0.0173, 0.0091};
     return scene_with_dots(setup, places, rays);
   }

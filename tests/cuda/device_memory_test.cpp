@@ -32,13 +32,13 @@ class SmallDevice : public ::testing::Test {
     if (DeviceState const state = device_state(); !state.usable) GTEST_SKIP() << state.text;
     renderer_ = make_renderer();
   }
-  Rendering render(Scene& scene) const {
-    return renderer_->render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  Rendering render(PlannedScene& scene) const {
+    return renderer_->render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::yes);
   }
   std::unique_ptr<Renderer> renderer_;
 };
 
-Scene scene_of(FieldSetup const& field, int dots_a_side, std::uint64_t rays) {
+PlannedScene scene_of(FieldSetup const& field, int dots_a_side, std::uint64_t rays) {
   gladstone::Setup setup = table1_setup(96);
   setup.medium.field = field;
   return scene_with_dots(setup, lattice(96, dots_a_side, 14), rays);
@@ -77,7 +77,7 @@ TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
   constexpr std::uint64_t rays = 64;
   constexpr std::size_t dot_bytes = sizeof(DotCone);
   for (FieldSetup const& field : {dns_plane("kepeak"), volume()}) {
-    Scene scene = scene_of(field, 6, rays);
+    PlannedScene scene = scene_of(field, 6, rays);
     render(scene);  // uploads the field, which remains on the device
     auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
       DeviceMemoryLimit const limit(bytes);
@@ -96,10 +96,10 @@ TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
   }
 }
 
-// Of the rays of a dot, only sums are stored, one DotCone per dot: a million rays of one dot need only the memory of
-// the images and of the points of a few cones, whereas records of 64 bytes per ray would exceed the limit.
+// The device stores only sums over the rays of a dot, one DotCone per dot: a million rays of one dot need only the
+// memory of the images and of the points of a few cones, whereas records of 64 bytes per ray would exceed the limit.
 TEST_F(SmallDevice, TracesAMillionRaysOfADotInTheMemoryOfAFew) {
-  Scene scene = scene_of(uniform_gradient(20, -8), 1, mebibyte);
+  PlannedScene scene = scene_of(uniform_gradient(20, -8), 1, mebibyte);
   DeviceMemoryLimit const limit(64 * mebibyte);
   EXPECT_EQ(render(scene).truth.size(), 1u);
   EXPECT_LT(limit.most_held(), 64 * mebibyte);
@@ -110,12 +110,12 @@ TEST_F(SmallDevice, TracesAMillionRaysOfADotInTheMemoryOfAFew) {
 TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
   gladstone::Setup setup = table1_setup(96);
   setup.target.dot_diameter_px = 30;
-  std::vector<Scene> scenes{scene_of(dns_plane("kepeak"), 8, 32)};
+  std::vector<PlannedScene> scenes{scene_of(dns_plane("kepeak"), 8, 32)};
   for (FieldSetup const& field : {FieldSetup{}, uniform_gradient(20, -8)}) {
     setup.medium.field = field;
     scenes.push_back(scene_with_dots(setup, lattice(96, 3, 33), 200));
   }
-  for (Scene& scene : scenes) {
+  for (PlannedScene& scene : scenes) {
     Rendering const expected = render(scene);
     for (std::size_t const kibibytes : {99, 64, 40, 24}) {
       SharedMemoryLimit const limit(kibibytes << 10);
@@ -125,12 +125,12 @@ TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
 }
 
 TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
-  Scene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
+  PlannedScene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
   few.dots.centre.resize(4);
-  FocusedDots const dots = focused_dots(scene).value();
+  FocusedDots const dots = focused_dots(scene, scene.plan).value();
   double const default_aim_distance = DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2;
   DeflectionTableLayout const plan(dots, scene.dots, default_aim_distance);
-  DeflectionTableLayout const of_few(focused_dots(few).value(), few.dots, default_aim_distance);
+  DeflectionTableLayout const of_few(focused_dots(few, few.plan).value(), few.dots, default_aim_distance);
   ASSERT_TRUE(plan.wanted() && of_few.wanted());
   // uploads the field, which remains on the device, and a table, which is released before the next one is allocated
   render(few);
@@ -152,7 +152,7 @@ TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
   field.scale = 4 * field.scale.value_or(1);
   gladstone::Setup setup = table1_setup(96);
   setup.medium.field = field;
-  Scene scene = scene_with_dots(setup, lattice(96, 20, 4.3), 64);
+  PlannedScene scene = scene_with_dots(setup, lattice(96, 20, 4.3), 64);
   render(scene);  // uploads field and table, which remain on the device
   auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
     DeviceMemoryLimit const limit(bytes);
@@ -172,11 +172,11 @@ TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
 // A volume whose polynomials would need more than a quarter of the device's memory is traced by its coefficients, with
 // the same results.
 TEST_F(SmallDevice, TracesAVolumeByItsCoefficientsWherePolynomialsAreTooLarge) {
-  Scene scene = scene_of(volume(), 6, 64);
+  PlannedScene scene = scene_of(volume(), 6, 64);
   std::size_t with_polynomials = 0;
   auto const render_anew = [&](std::size_t bytes, std::size_t& most) {
     DeviceMemoryLimit const limit(bytes);
-    Rendering rendering = make_renderer()->render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+    Rendering rendering = make_renderer()->render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no);
     most = limit.most_held();
     return rendering;
   };
@@ -190,12 +190,13 @@ TEST_F(SmallDevice, TracesAVolumeByItsCoefficientsWherePolynomialsAreTooLarge) {
 }
 
 TEST_F(SmallDevice, RefusesAVolumeThatIsLargerThanItBeforeAnyAllocation) {
-  Scene before = scene_of(sinusoid(0.1, 6e-3), 3, 64), large = scene_of(volume(), 3, 64);
+  PlannedScene before = scene_of(sinusoid(0.1, 6e-3), 3, 64), large = scene_of(volume(), 3, 64);
   {
     DeviceMemoryLimit const limit(mebibyte);
-    EXPECT_THAT(error_of([&] { make_renderer()->render(large, large.dots, RenderImages::yes, RenderTheory::no); }),
-                ::testing::MatchesRegex("out of device memory: the field's refractivity needs 1\\.[0-9]+ MiB, "
-                                        "1\\.000 of 1\\.000 MiB are free; .*"));
+    EXPECT_THAT(
+        error_of([&] { make_renderer()->render(large, large.plan, large.dots, RenderImages::yes, RenderTheory::no); }),
+        ::testing::MatchesRegex("out of device memory: the field's refractivity needs 1\\.[0-9]+ MiB, "
+                                "1\\.000 of 1\\.000 MiB are free; .*"));
     EXPECT_EQ(limit.most_held(), 0u);
   }
   // results after the error equal those before it

@@ -60,7 +60,7 @@ TEST(PairedPlane, HasColumnsSideBySide) {
   EXPECT_EQ(random.view()(-2, -3), centre[-pitch - 3].re);
 }
 
-// Of equal neighbours, the first in reading order is a maximum, as in is_maximum().
+// Among equal neighbours, the first in reading order is a maximum, as in is_maximum().
 TEST(PairedPlane, ItsBlocksHaveEveryMaximumOnce) {
   for (int radius = 1; radius <= 16; ++radius)
     for (int const levels : {1, 3, 1000}) {

@@ -36,17 +36,17 @@ BosSetup droplets_setup() {
 
 class CudaParticlesTest : public OnBothDevices<RaysMethod> {
  protected:
-  Rendering on_device(Scene const& scene, ParticleLight light = ParticleLight::scattered,
+  Rendering on_device(PlannedScene const& scene, ParticleLight light = ParticleLight::scattered,
                       RenderImages images = RenderImages::yes) {
-    return renderer_->render_particles(scene, scene.particles, light, images);
+    return renderer_->render_particles(scene, scene.plan, scene.particles, light, images);
   }
 
   /// Like expect_as_on_cpu() for dots: positions to 1e-9 px, photons to a relative 1e-9, counts exactly, images to a
   /// level of 16 bits.
   /// @return largest margin by which a particle was aimed beyond the stop [m]
-  double expect_particles_as_on_cpu(Scene scene, ParticleLight light = ParticleLight::scattered,
+  double expect_particles_as_on_cpu(PlannedScene scene, ParticleLight light = ParticleLight::scattered,
                                     RenderImages images = RenderImages::yes) {
-    Rendering const cpu = on_cpu_.render_particles(scene, scene.particles, light, images),
+    Rendering const cpu = on_cpu_.render_particles(scene, scene.plan, scene.particles, light, images),
                     gpu = on_device(scene, light, images);
     GroundTruth const &a = cpu.truth, &b = gpu.truth;
     EXPECT_EQ(a.size(), b.size());
@@ -78,12 +78,12 @@ class CudaParticlesTest : public OnBothDevices<RaysMethod> {
     return gpu.pupil_margin;
   }
 
-  Scene droplets(std::uint64_t rays, std::function<void(BosSetup&)> const& change = {}) {
+  PlannedScene droplets(std::uint64_t rays, std::function<void(BosSetup&)> const& change = {}) {
     BosSetup setup = droplets_setup();
     if (change) change(setup);
-    Scene scene = build_scene(setup);
-    scene = with_step(scene, determine_step_by_tracing(scene));
-    scene.rays_per_dot = rays;
+    PlannedScene scene(build_scene(setup));
+    plan_step(scene);
+    scene.plan.rays = rays;
     return scene;
   }
 };
@@ -125,9 +125,9 @@ TEST_F(CudaParticlesTest, TakesTheRaysThatEachNeeds) {
         setup.medium.thickness = 20e-3;
       }};
   for (auto const& kind : kinds) {
-    Scene scene = droplets(1, kind);
-    scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
-    ASSERT_TRUE(scene.adaptive_criteria);
+    PlannedScene scene = droplets(1, kind);
+    scene.plan = plan_rays_by_tracing(scene, scene.plan);
+    ASSERT_TRUE(scene.plan.adaptive_criteria);
     expect_particles_as_on_cpu(scene);
     expect_particles_as_on_cpu(scene, ParticleLight::scattered, RenderImages::no);
     std::vector<std::int64_t> const rays = on_device(scene).truth.rays_planned;
@@ -232,7 +232,7 @@ TEST_F(CudaParticlesTest, TruthAlone) {
 // The results of a particle are bitwise independent of other particles and equal in two runs.
 TEST_F(CudaParticlesTest, GiveTheSameBits) {
   auto const change = [](BosSetup& setup) { setup.medium.field = blob(); };
-  Scene one = droplets(100, change), other = one, alone = one;
+  PlannedScene one = droplets(100, change), other = one, alone = one;
   Rendering const first = on_device(one), second = on_device(other);
   EXPECT_TRUE(same_bits(first.light.reference, second.light.reference));
   EXPECT_TRUE(same_bits(first.light.flow, second.light.flow));
@@ -248,7 +248,7 @@ TEST_F(CudaParticlesTest, GiveTheSameBits) {
 // Many particles are processed in batches of 256 MB. In addition, there are two images of 96 x 96 px in fixed point and
 // as light, and the scattering table, 3 kB per droplet diameter.
 TEST_F(CudaParticlesTest, ManyPassInBatches) {
-  Scene scene = droplets(32, [](BosSetup& setup) {
+  PlannedScene scene = droplets(32, [](BosSetup& setup) {
     setup.piv->particles.amount = 250000;
     setup.piv->particles.diameter.spread = DiameterSpread::one;
   });

@@ -27,19 +27,19 @@ void put_lens(BosSetup& setup, std::string const& name) {
 }
 
 /// Returns a scene of any camera, with 36 dots around the centre of the image.
-Scene seen_through(std::uint64_t rays, std::function<void(BosSetup&)> const& change) {
+PlannedScene seen_through(std::uint64_t rays, std::function<void(BosSetup&)> const& change) {
   BosSetup setup = table1_setup(96);
   setup.medium.field = sinusoid(0.1, 6e-3);
   setup.target.dots_per_32px_window = 1;
   change(setup);
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   scene.dots.centre.clear();
   for (Vec2d const place : lattice(96, 6, 14)) {
     Vec2d const at = scene.to_target(place);
     if (std::isfinite(at.x)) scene.dots.centre.push_back(at);
   }
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene.rays_per_dot = rays;
+  plan_step(scene);
+  scene.plan.rays = rays;
   return scene;
 }
 
@@ -53,7 +53,7 @@ TEST_F(CudaRaysTest, LensesOfManySurfaces) {
 // Every point uses the number of rays that it needs: those behind the blob more than others. The numbers equal those of
 // the CPU.
 TEST_F(CudaRaysTest, TakeTheRaysThatEachNeeds) {
-  Scene scene = seen_through(1, [](BosSetup& setup) {
+  PlannedScene scene = seen_through(1, [](BosSetup& setup) {
     setup.medium.field = GaussianBlob<double>{{{1e-3, 0, 0}, -0.4, 0.8e-3}};
     setup.target.dot_diameter_px = 0;
     setup.camera.bit_depth = 8;
@@ -61,12 +61,12 @@ TEST_F(CudaRaysTest, TakeTheRaysThatEachNeeds) {
     setup.camera.tilt = {0.01, 0};
   });
   scene.dots.half_size = 0;
-  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
-  ASSERT_TRUE(scene.adaptive_criteria);
+  scene.plan = plan_rays_by_tracing(scene, scene.plan);
+  ASSERT_TRUE(scene.plan.adaptive_criteria);
   expect_as_on_cpu(scene);
-  Scene again = scene;
+  PlannedScene again = scene;
   std::vector<std::int64_t> const rays =
-      renderer_->render(again, again.dots, RenderImages::yes, RenderTheory::no).truth.rays_planned;
+      renderer_->render(again, again.plan, again.dots, RenderImages::yes, RenderTheory::no).truth.rays_planned;
   auto const [least, most] = std::minmax_element(rays.begin(), rays.end());
   EXPECT_LT(*least, *most);
 }
@@ -145,14 +145,14 @@ TEST_F(CudaRaysTest, LensletsBeforeTheSensor) {
 // A source that is blurred over more than the largest window, and one with more rays than a block traces: light outside
 // of the window is added ray by ray.
 TEST_F(CudaRaysTest, WideBlursAndManyRays) {
-  Scene blurred = scene_of(sinusoid(0.1, 6e-3), 2000, [](BosSetup& setup) {
+  PlannedScene blurred = scene_of(sinusoid(0.1, 6e-3), 2000, [](BosSetup& setup) {
     setup.lens.focus = Focus::distance;
     setup.lens.focus_distance = 0.6;
     setup.lens.f_number = 4;
   });
   blurred.dots.centre.resize(3);
   expect_as_on_cpu(blurred);
-  Scene many = scene_of(uniform_gradient(20, 5), 40000);
+  PlannedScene many = scene_of(uniform_gradient(20, 5), 40000);
   many.dots.centre.resize(2);
   expect_as_on_cpu(many);
 }
@@ -175,7 +175,7 @@ TEST_F(CudaRaysTest, DotsOnEdgesOfPixels) {
 
 // The results of a source are bitwise independent of the number of other sources.
 TEST_F(CudaRaysTest, ASourceAloneIsTheSourceAmongMany) {
-  Scene many = scene_of(dns_plane("late"), 700), alone = many;
+  PlannedScene many = scene_of(dns_plane("late"), 700), alone = many;
   alone.dots.centre.resize(1);
   Rendering const of_many = on_device(many), of_one = on_device(alone);
   EXPECT_EQ(of_many.truth.displacement_px[0], of_one.truth.displacement_px[0]);

@@ -14,7 +14,7 @@ namespace {
 class CudaLightTest : public CudaRendererTest {
  protected:
   /// Returns 400 dots on 96 x 96 px behind a DNS plane. @param times  factor of its density
-  static Scene dense_scene(std::string const& instant, double times, std::uint64_t rays) {
+  static PlannedScene dense_scene(std::string const& instant, double times, std::uint64_t rays) {
     BosSetup setup = table1_setup(96);
     setup.medium.field = dns_plane(instant);
     setup.medium.field.scale = times * setup.medium.field.scale.value_or(1);
@@ -26,8 +26,8 @@ class CudaLightTest : public CudaRendererTest {
 
 /// Returns the number of dots in caustics: the edge of the stop, as seen through the table, is crossed more than once
 /// in some direction.
-int dots_in_caustics(Scene const& scene) {
-  FocusedDots const dots = focused_dots(scene).value();
+int dots_in_caustics(PlannedScene const& scene) {
+  FocusedDots const dots = focused_dots(scene, scene.plan).value();
   DeflectionMap const map(dots, DeflectionTableLayout(dots, scene.dots, scene.imaging.entrance_pupil));
   OwnedDotModel const owned(dots, scene.dots, map.table(), false);
   DotModel const& model = owned.model;
@@ -52,7 +52,7 @@ double widest_dot(GroundTruth const& truth) {
 TEST_F(CudaLightTest, TablesOnPlanes) {
   for (std::string const instant : {"late", "kepeak"}) {
     SCOPED_TRACE(instant);
-    Scene scene = dense_scene(instant, 1, 32);
+    PlannedScene scene = dense_scene(instant, 1, 32);
     EXPECT_EQ(dots_in_caustics(scene) > 0, instant == "kepeak");
     expect_as_on_cpu(scene);
   }
@@ -63,16 +63,20 @@ TEST_F(CudaLightTest, TablesOnPlanes) {
 TEST_F(CudaLightTest, TablesInCaustics) {
   for (std::uint64_t const rays : {64, 1100}) {
     SCOPED_TRACE(rays);
-    Scene scene = dense_scene("kepeak", 4, rays);
+    PlannedScene scene = dense_scene("kepeak", 4, rays);
     EXPECT_GT(dots_in_caustics(scene), 300);
-    EXPECT_GT(widest_dot(FocusedDotsRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no).truth), 3);
+    EXPECT_GT(
+        widest_dot(
+            FocusedDotsRenderer().render(scene, scene.plan, scene.dots, RenderImages::no, RenderTheory::no).truth),
+        3);
     expect_as_on_cpu(scene);
   }
 }
 
 TEST_F(CudaLightTest, SquareSources) {
   for (double const side : {2.0, 9.0}) {
-    Scene scene = scene_of(sinusoid(0.1, 6e-3), 96, [&](BosSetup& setup) { setup.target.dot_diameter_px = side; });
+    PlannedScene scene =
+        scene_of(sinusoid(0.1, 6e-3), 96, [&](BosSetup& setup) { setup.target.dot_diameter_px = side; });
     scene.dots.shape = SourceShape::square;
     expect_as_on_cpu(scene);
   }
@@ -88,18 +92,18 @@ TEST_F(CudaLightTest, PictureAsSources) {
   setup.target.file = testing::TempDir() + "gladstone_cuda_picture.tif";
   setup.target.extent_m = Vec2d{45, 35} * (setup.camera.pixel_pitch / setup.imaging().magnification);
   write_tiff(setup.target.file, picture, {});
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   ASSERT_EQ(scene.dots.centre.size(), 47u);  // 16 of 63 are black
   ASSERT_EQ(scene.dots.radiance.size(), 47u);
   plan_step(scene);
-  scene.rays_per_dot = 100;
+  scene.plan.rays = 100;
   expect_as_on_cpu(scene);
 }
 
 // A source without light is traced like any other, and has no truth.
 TEST_F(CudaLightTest, SourcesWithoutRadiance) {
   for (FieldSetup const& field : {FieldSetup{}, sinusoid(0.1, 6e-3)}) {
-    Scene scene = scene_of(field, 64);
+    PlannedScene scene = scene_of(field, 64);
     for (std::size_t i = 0; i < scene.dots.centre.size(); ++i) {
       scene.dots.radiance.push_back(0.5 * static_cast<double>(i % 3));
     }
@@ -119,7 +123,7 @@ TEST_F(CudaLightTest, WideSpots) {
   };
   for (Case const& one : {Case{16, 23}, Case{32, 43}}) {
     SCOPED_TRACE(one.width);
-    Scene scene = scene_of(sinusoid(0.1, 6e-3), 16, [&](BosSetup& setup) {
+    PlannedScene scene = scene_of(sinusoid(0.1, 6e-3), 16, [&](BosSetup& setup) {
       setup.lens.spot = SpotModel::seed_eq8;
       setup.lens.f_number = one.f_number;
     });
@@ -137,7 +141,7 @@ TEST_F(CudaLightTest, DotsAtTheBorder) {
     BosSetup setup = table1_setup(96);
     setup.medium.field = field;
     expect_as_on_cpu(scene_with_dots(setup, few, 200));
-    Scene const many = scene_with_dots(setup, lattice(96, 12, 10.71), 64);
+    PlannedScene const many = scene_with_dots(setup, lattice(96, 12, 10.71), 64);
     expect_as_on_cpu(many);
   }
 }

@@ -37,7 +37,7 @@ TYPED_TEST(ByBothMethods, VolumesSplineAndLinear) {
 }
 
 TEST_F(CudaRendererTest, ManyRaysOfFewDots) {
-  Scene scene = scene_of(volume_file(), 20000);
+  PlannedScene scene = scene_of(volume_file(), 20000);
   scene.dots.centre.resize(2);
   expect_as_on_cpu(scene);
 }
@@ -69,7 +69,7 @@ TYPED_TEST(ByBothMethods, ChiefRaysPointsAndRandomPupil) {
 }
 
 TYPED_TEST(ByBothMethods, TwoRunsGiveTheSameBits) {
-  Scene scene = this->scene_of(dns_plane("kepeak"), 500);
+  PlannedScene scene = this->scene_of(dns_plane("kepeak"), 500);
   Rendering const one = this->on_device(scene), two = this->on_device(scene);
   EXPECT_TRUE(same_bits(one.light.reference, two.light.reference));
   EXPECT_TRUE(same_bits(one.light.flow, two.light.flow));
@@ -82,7 +82,7 @@ TYPED_TEST(ByBothMethods, TwoRunsGiveTheSameBits) {
 // next level, or drawn again if a rejection differs.
 TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
   for (bool const noisy : {false, true}) {
-    Scene scene = scene_of(dns_plane("late"), 64, [&](BosSetup& setup) {
+    PlannedScene scene = scene_of(dns_plane("late"), 64, [&](BosSetup& setup) {
       setup.camera.bit_depth = 12;
       setup.camera.offset_dn = 20;
       setup.camera.noise.enabled = noisy;
@@ -91,7 +91,7 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
     for (Polarity const polarity : {Polarity::bright, Polarity::dark}) {
       scene.setup.target.polarity = polarity;
       Rendering const moved = on_device(scene);
-      Rendering const kept = renderer_->render(scene, scene.dots, RenderImages::in_place, RenderTheory::no);
+      Rendering const kept = renderer_->render(scene, scene.plan, scene.dots, RenderImages::in_place, RenderTheory::no);
       ASSERT_TRUE(kept.in_place);
       EXPECT_TRUE(kept.light.reference.empty());
       HostLight const host(moved.light);
@@ -128,7 +128,7 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
 // with bitwise identical truth, theory and light.
 TEST_F(CudaRendererTest, SinglePrecisionIsRenderedInDouble) {
   for (FieldSetup const& field : {dns_plane("late"), volume_file()}) {
-    Scene scene = scene_of(field, 256), asked = scene;
+    PlannedScene scene = scene_of(field, 256), asked = scene;
     asked.setup.render.precision = Precision::single;
     Rendering const exact = on_device(scene), found = on_device(asked);
     EXPECT_EQ(exact.truth.displacement_px, found.truth.displacement_px);
@@ -138,7 +138,7 @@ TEST_F(CudaRendererTest, SinglePrecisionIsRenderedInDouble) {
 }
 
 TEST_F(CudaRendererTest, NothingToTraceIsNoError) {
-  Scene scene = scene_of({}, 16);
+  PlannedScene scene = scene_of({}, 16);
   scene.dots.centre.clear();
   Rendering const empty = on_device(scene);
   EXPECT_EQ(empty.truth.size(), 0u);

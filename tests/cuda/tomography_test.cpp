@@ -32,8 +32,8 @@ void converge(ProjectedView& view, double pupil_distance) {
   }
 }
 
-/// Views with unmeasured lines, of a blob beside the middle of the volume. The number of nodes is no multiple of a
-/// tile's.
+/// Views with unmeasured lines, of a blob that is not at the middle of the volume. The number of nodes is not a
+/// multiple of the number of nodes of a tile.
 std::vector<ProjectedView> make_views(bool parallel) {
   std::vector<ProjectedView> views = view_blob(5, 27, width, radius, {2e-3, -1e-3, 1.5e-3});
   for (ProjectedView& view : views) {

@@ -224,7 +224,7 @@ TEST_F(Benchmark, RefusesHalfAGridAndRowsGivenTwice) {
 
 TEST_F(Benchmark, RefusesWhatItCannotScore) {
   expect_refused({"benchmark", "-o", "b", "--cases", "vortx"}, 2, {"vortx", "did you mean \"vortex\"?"});
-  expect_refused({"benchmark", "-o", "b", "--vectors", "mine"}, 2, {"--vectors mine", "NAME=F"});
+  expect_refused({"benchmark", "-o", "b", "--vectors", "mine"}, 2, {"--vectors: \"mine\"", "NAME=F"});
   expect_refused({"benchmark", "-o", "b", "--vectors", "mine=nowhere"}, 2, {"nowhere", "does not exist"});
   expect_refused({"benchmark", "-o", "b", "--vectors", "default=."}, 2, {"name of one of our estimators"});
   std::filesystem::create_directories(in("empty"));

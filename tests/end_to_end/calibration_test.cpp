@@ -99,7 +99,7 @@ TEST_F(Calibrations, ReportPositionErrorDueToRays) {
   }
   auto const few = json_of({"render", "setup.toml", "-o", "few", "--quiet", "--set", "render.rays_per_dot=64"});
   EXPECT_GT(few["planes"][0]["place_error_px"]["rms"], 2 * json["planes"][0]["place_error_px"]["rms"].get<double>());
-  EXPECT_THAT(few["warnings"].dump(), testing::HasSubstr("increase render.rays_per_dot"));
+  EXPECT_THAT(warnings_in(few), testing::Contains("low_accuracy at render.rays_per_dot"));
 }
 
 // A double Gauss lens with a grid of +-1.2 m at a distance of 1 m: its mounts vignette dots far from the axis
@@ -129,11 +129,10 @@ rays_per_dot = 64
   for (auto const& plane : json["planes"]) {
     int const unseen = plane["dots_unseen"];
     EXPECT_GT(unseen, 0);
-    EXPECT_THAT(warnings, testing::HasSubstr(std::to_string(unseen) + " of 169 dots of the plane Z = " +
-                                             std::to_string(static_cast<int>(plane["z_mm"].get<double>())) +
-                                             " mm are not imaged"));
+    EXPECT_THAT(warnings, testing::HasSubstr(std::to_string(unseen) + " of 169 "));
   }
-  EXPECT_THAT(warnings, testing::Not(testing::HasSubstr("medium deflects")));
+  EXPECT_THAT(warnings_in(json), testing::Contains("out_of_view at target").Times(2))
+      << "by the lens, not by the medium";
 }
 
 TEST_F(Calibrations, RecoverTheCamera) {
@@ -425,7 +424,7 @@ TEST_F(CalibrationPictures, OfAPlateThatDoesNotMoveAlongItsNormalGiveTheCameraAn
   // the principal point is determined to 1 px here, so that the drift is determined to 1 / fx
   EXPECT_NEAR(json["drift"][0].get<double>(), drift, 5 / fx);
   EXPECT_NEAR(json["drift"][1].get<double>(), 0, 5 / fx);
-  EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("degrees to its normal"));
+  EXPECT_THAT(warnings_in(json), testing::Contains("inconsistent"));
   auto const& parameter = json["pinhole"]["parameters"]["fx"];
   EXPECT_NEAR(parameter["value"].get<double>(), fx, 1e-3 * fx);
 }
@@ -436,7 +435,7 @@ TEST_F(CalibrationPictures, WithAMiddleDotThatIsOffByOneAreCorrected) {
                          "[camera.pose]\nposition_mm = [-5.0, 0.0, 300.0]\nrotation_deg = [0, 0, 0]\n"));
   succeed({"render", "one.toml", "-o", "aside", "--quiet"});
   auto const json = calibrated({"aside/plane_000.tif", p1, p2});
-  EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("the middle dot was wrong by 1 columns and 0 rows"));
+  EXPECT_THAT(warnings_in(json), testing::Contains("assumed at plane_000.tif"));
   auto const& parameter = json["pinhole"]["parameters"]["fx"];
   EXPECT_NEAR(parameter["value"].get<double>(), fx, 4 * parameter["standard_error"].get<double>());
   EXPECT_LT(json["pinhole"]["rms_px"].get<double>(), 0.01);

@@ -160,21 +160,25 @@ TEST_F(Case, ComparisonsCanBeWrittenApart) {
   succeed({"compare", "case", "-o", "case/"});
   EXPECT_EQ(read("case/errors.json"), beside);
   EXPECT_TRUE(fs::exists(in("case/vectors.h5")));
+  EXPECT_TRUE(fs::exists(in("case/error_budget.png")));
   expect_refused({"compare", "case", "-o", "setup.toml"}, 2, {"setup.toml: is a file"});
   fs::create_directory(in("mine"));
   write("mine/notes.txt", "notes");
   expect_refused({"compare", "case", "-o", "mine"}, 2, {"mine"});
   EXPECT_EQ(read("mine/notes.txt"), "notes");
+  render("case");
+  EXPECT_THAT(names("case"),
+              UnorderedElementsAre("reference.tif", "flow.tif", "truth.h5", "setup.toml", "summary.json"))
+      << "every figure is in case_file::derived";
 }
 
 TEST_F(Case, ColourPicturesAreSaidToBeTurnedToGrey) {
   std::string picture = "P6\n64 64\n255\n";
   for (unsigned i = 0; i < 3 * 64 * 64; ++i) picture += static_cast<char>(i * 2654435761u >> 24);
   write("colour.ppm", picture);
-  Outcome const outcome =
-      gladstone({"correlate", "colour.ppm", "colour.ppm", "-o", "v.csv", "--set", "correlate.window_px=[16]"});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("colour.ppm is a colour image: its luminance (Rec. 709) is correlated"));
+  auto const json =
+      json_of({"correlate", "colour.ppm", "colour.ppm", "-o", "v.csv", "--set", "correlate.window_px=[16]"});
+  EXPECT_THAT(warnings_in(json), testing::Contains("assumed at colour.ppm"));
   EXPECT_EQ(json_of({"info", "image", "colour.ppm"})["channels"], 3);
 }
 

@@ -54,7 +54,7 @@ TEST_F(InfoField, RefusesFiguresThatCannotBe) {
   write_field("line.vtk", 6, 1, 1);
   Outcome const line = gladstone({"info", "field", "line.vtk", "--figure", "planes.svg"});
   EXPECT_EQ(line.exit_code, 2);
-  expect_refused({"info", "particles", "setup.toml", "--figure", "planes.svg"}, 2, {"draws no figure"});
+  expect_error({"info", "particles", "setup.toml", "--figure", "planes.svg"}, 2, "arguments at --figure");
 }
 
 // Components are described one by one; a scalar field of the same file by its name.

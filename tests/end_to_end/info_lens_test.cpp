@@ -97,8 +97,9 @@ TEST_F(InfoLens, CountsLostRaysBySurfaceAndCause) {
 // The exit pupil of a telecentric lens is at the stop, to rounding: this is printed as 0, without sign or digits.
 TEST_F(InfoLens, TellsNoRoundingOfALengthThatIsNone) {
   std::string const text = succeed({"info", "lens", GLADSTONE_DATA_DIR "/lenses/telecentric.toml"});
-  EXPECT_THAT(text, HasSubstr("exit pupil            3.2 mm wide at 0 mm from the last vertex"));
-  EXPECT_THAT(text, HasSubstr("back focal length     0 mm behind the last vertex"));
+  EXPECT_THAT(text, testing::ContainsRegex("exit pupil, position +0 mm  .from the last vertex."));
+  EXPECT_THAT(text, testing::ContainsRegex("exit pupil, diameter +3.2 mm\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("back focal length +0 mm "));
   EXPECT_THAT(text, testing::Not(HasSubstr(" -0 mm")));
 }
 

@@ -58,7 +58,7 @@ TEST_F(InfoMie, NamesWhatIsNoSphere) {
   for (char const* m : {"1.5,", "glass", "1,2,3"}) {
     expect_refused({"info", "mie", "--x", "1", "--m", m}, 2, {"--m: ", "RE or RE,IM"});
   }
-  expect_refused({"info", "mie", "sphere.toml", "--x", "1", "--m", "1.5"}, 2, {"reads no file"});
+  expect_error({"info", "mie", "sphere.toml", "--x", "1", "--m", "1.5"}, 2, "arguments at sphere.toml");
 }
 
 }  // namespace

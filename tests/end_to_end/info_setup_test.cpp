@@ -40,7 +40,7 @@ TEST_F(InfoSetup, DescribesTheOverriddenSetup) {
   auto const json = json_of({"info", "setup", "setup.toml", "--set", "lens.f_number=22"});
   EXPECT_NEAR(json["cone_diameter_mm"], 105.0 / 22 * 250 / 1000, 1e-9);
   expect_refused({"info", "setup", "setup.toml", "--set", "lens.f_nubmer=22"}, 2, {"lens.f_nubmer"});
-  expect_refused({"info", "image", "a.tif", "--set", "lens.f_number=22"}, 2, {"remove --set"});
+  expect_refused({"info", "image", "a.tif", "--set", "lens.f_number=22"}, 2, {"--set: requires a setup"});
 }
 
 TEST_F(InfoSetup, EstimatesTheCostOfRendering) {

@@ -19,7 +19,7 @@ class JsonErrors : public ProgramFixture {
       return nlohmann::json::array();
     }
     EXPECT_EQ(json["exit_code"], exit_code);
-    EXPECT_TRUE(json["warnings"].is_array());
+    EXPECT_TRUE(json["warnings"].is_array() && json["warning_records"].is_array());
     return json["errors"];
   }
 };
@@ -65,11 +65,19 @@ TEST_F(JsonErrors, NameTheFile) {
 }
 
 TEST_F(JsonErrors, CoverTheCommandLine) {
-  for (std::vector<std::string> const& wrong :
-       {std::vector<std::string>{"rendre"}, {"render"}, {"render", "a.toml", "-o", "b", "--thread", "1"}}) {
+  using Arguments = std::vector<std::string>;
+  for (auto const& [wrong, place] : {std::pair{Arguments{"rendre"}, "rendre"},
+                                     {Arguments{"render"}, "setup"},
+                                     {Arguments{"render", "a.toml", "-o", "b", "--thread", "1"}, "--thread"},
+                                     {Arguments{"render", "a.toml", "-o", "b", "--threads", "many"}, "--threads"},
+                                     {Arguments{"render", "a.toml", "-o", "b", "--threads", "-1"}, "--threads"},
+                                     {Arguments{"correlate", "a.tif", "b.tif", "--pairing", "all"}, "--pairing"},
+                                     {Arguments{"info", "image", "a.tif", "--figure", "a.png"}, "--figure"}}) {
     nlohmann::json const errors = run_with_errors(wrong, 2);
     ASSERT_EQ(errors.size(), 1u) << wrong.front();
     EXPECT_EQ(errors[0]["code"], "arguments");
+    EXPECT_EQ(errors[0]["place"], place) << errors;
+    EXPECT_FALSE(errors[0].contains("file"));
     EXPECT_FALSE(errors[0]["message"].get<std::string>().empty());
   }
 }

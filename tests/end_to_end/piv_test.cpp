@@ -210,7 +210,7 @@ TEST_F(Piv, MovesParticlesByTheVelocityOfAFile) {
     EXPECT_NEAR(truth[2 * i], expected, 1e-3);
   }
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
-  EXPECT_THAT(summary["warnings"].dump(), testing::Not(testing::HasSubstr("outside the velocity field")));
+  EXPECT_THAT(warnings_in(summary), testing::Not(testing::Contains("assumed at flow.file")));
   // the source file of a case is identified by its content
   EXPECT_THAT(Hdf5Reader(in("case/truth.h5").string()).attribute("inputs_sha256"), testing::HasSubstr("velocity.h5"));
   std::string const short_of_it = with(by_file, "spacing_mm = [1, 1, 1]", "spacing_mm = [0.8, 1, 1]");
@@ -411,11 +411,11 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   expect_error({"views", "case", "--views", "3", "-o", "three", "--quiet"}, 2, "output at flow_refocused.tif");
   // The stop is 12.04 px wide: 13 views across contain all information, more than twice as many give a warning
   Outcome const enough = gladstone({"views", "case", "--views", "13", "-o", "enough"});
-  EXPECT_THAT(enough.err, testing::Not(testing::HasSubstr("--views 13")));
+  EXPECT_THAT(enough.err, testing::Not(testing::HasSubstr("warning: --views")));
   Outcome const many = gladstone({"views", "case", "--views", "25", "-o", "many", "--quiet"});
   EXPECT_EQ(many.exit_code, 0) << many.err;
-  EXPECT_THAT(many.err, testing::AllOf(testing::HasSubstr("warning: --views 25: "), testing::HasSubstr("12 px wide"),
-                                       testing::HasSubstr("--views 13 gives one view per pixel")));
+  EXPECT_THAT(many.err, testing::AllOf(testing::HasSubstr("warning: --views: "), testing::HasSubstr("12 px"),
+                                       testing::HasSubstr("--views 13")));
   write("plain.toml", piv_setup);
   render("plain", {}, "plain.toml");
   expect_error({"views", "plain"}, 2, "unsupported at setup.toml");

@@ -63,7 +63,8 @@ TEST_F(RealLens, NamesTheCatalogueOfAGlassThatSeveralContain) {
 }
 
 // An object-space telecentric lens, positioned by its first vertex: a gas with a uniform gradient deflects light by
-// eps, which displaces the dots by M Z_D eps / p, with M that of the lens at their distance, whatever lies between.
+// eps, which displaces the dots by M Z_D eps / p, where M is the magnification of the lens at the distance of the dots,
+// regardless of the elements in between.
 TEST_F(RealLens, TelecentricOneRunsThroughTheWholeChain) {
   std::string const lens = "model = \"prescription\"\nfile = \"" + std::string(GLADSTONE_DATA_DIR) +
                            "/lenses/telecentric.toml\"\nf_number = 11.0";

@@ -355,7 +355,7 @@ TEST_F(Sequences, NameBadPairsAndDoTheOthers) {
   for (int k = 8; k <= 12; ++k) write_image("B_" + std::to_string(k) + ".tif", dots_at({1, 0}, 3, 80));
   Outcome const nothing = gladstone(arguments({"A_*.tif", "B_*.tif"}, "none/"));
   EXPECT_EQ(nothing.exit_code, 2) << nothing.err;
-  EXPECT_THAT(nothing.err, HasSubstr("none of the 5 pairs"));
+  EXPECT_THAT(nothing.err, HasSubstr("all 5 pairs failed"));
 }
 
 // The first image has another size than the others: it alone is named, and its pair fails.
@@ -375,7 +375,7 @@ TEST_F(Sequences, FailIfNoPairHasAValidVector) {
     write_image(name, Image<std::uint16_t>(side, side, 7));
   Outcome const outcome = gladstone(arguments({"A_*.tif", "B_*.tif"}, "out/"));
   EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("none of the 2 pairs"));
+  EXPECT_THAT(outcome.err, HasSubstr("all 2 pairs failed"));
 }
 
 // An input that is missing or no image is named as such, not as a sequence that is too short.

@@ -7,6 +7,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -20,7 +21,7 @@ class SilentMistakes : public ProgramFixture {
   std::vector<std::string> warnings(std::string const& setup, std::vector<std::string> const& more = {}) const {
     write("setup.toml", setup);
     render("case", more);
-    return nlohmann::json::parse(read("case/summary.json"))["warnings"].get<std::vector<std::string>>();
+    return warnings_in(nlohmann::json::parse(read("case/summary.json")));
   }
   double largest_displacement() const {
     double most = 0;
@@ -51,8 +52,7 @@ TEST_F(SilentMistakes, PlumeIsTruncatedOnlyOnRequest) {
   EXPECT_THAT(warnings(plume), IsEmpty());
   EXPECT_THAT(read("case/setup.toml"), HasSubstr("thickness_mm = 105.0"));
   double const whole = largest_displacement();
-  EXPECT_THAT(warnings(plume, {"--set", "medium.thickness_mm=10"}),
-              Contains(HasSubstr("10 mm cut 64 % of the displacement off")));
+  EXPECT_THAT(warnings(plume, {"--set", "medium.thickness_mm=10"}), Contains("approximated at medium.thickness_mm"));
   // the lever arms of slices differ by 10 % over the plume; their mean is Z_D, and the remaining effect is of second
   // order
   EXPECT_NEAR(largest_displacement() / whole, std::erf(1.0 / 3), 0.01);
@@ -72,9 +72,8 @@ TEST_F(SilentMistakes, WarnsOfUnitlessCoordinatesAndInvisibleField) {
       "kind = \"file\"\nfile = \"unnamed.h5\"\ndataset = \"density\"\nextrude = true\n"
       "center_mm = [1.0, 1.0, 0.0]";
   EXPECT_THAT(warnings(with_field(field)),
-              AllOf(Contains(HasSubstr("name no unit and are taken as mm (the field is 0.008 x 0.008 mm wide)")),
-                    Contains(HasSubstr("with lengths in metres, it would be 8 x 8 mm wide")),
-                    Contains(HasSubstr("no displacement: "))));
+              AllOf(Contains("assumed at medium.field.file"), Contains("implausible at medium.field"),
+                    Contains("unsuitable at medium.field")));
 }
 
 TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
@@ -82,15 +81,14 @@ TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
   std::string const field =
       "kind = \"file\"\nfile = \"plane.h5\"\ndataset = \"density\"\nextrude = true\n"
       "spacing_mm = [0.375e-3, 0.375e-3, 0.375e-3]";
-  EXPECT_THAT(warnings(with_field(field)), Contains(HasSubstr("with lengths in metres")));
+  EXPECT_THAT(warnings(with_field(field)), Contains("implausible at medium.field"));
   EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.375, 0.375, 0.375]"}), IsEmpty());
 }
 
 TEST_F(SilentMistakes, WarnsOfNegligibleField) {
-  EXPECT_THAT(
-      warnings(with_field("kind = \"uniform_gradient\"\ngradient_kg_m4 = [1e-6, 0.0, 0.0]")),
-      Contains(HasSubstr("no displacement: according to Eq. 9 the field displaces no point in the view by more than")));
-  EXPECT_THAT(warnings(with_field("kind = \"none\"")), Not(Contains(HasSubstr("no displacement: "))));
+  EXPECT_THAT(warnings(with_field("kind = \"uniform_gradient\"\ngradient_kg_m4 = [1e-6, 0.0, 0.0]")),
+              Contains("unsuitable at medium.field"));
+  EXPECT_THAT(warnings(with_field("kind = \"none\"")), Not(Contains("unsuitable at medium.field")));
 }
 
 TEST_F(SilentMistakes, WarnsOfUnusedThickness) {
@@ -107,7 +105,7 @@ TEST_F(SilentMistakes, WarnsOfUnusedThickness) {
   EXPECT_THAT(warnings(with_field(field)), IsEmpty());
   EXPECT_THAT(read("case/setup.toml"), HasSubstr("thickness_mm = 4.0"));
   EXPECT_THAT(warnings(with_field(field), {"--set", "medium.thickness_mm=20"}),
-              Contains(HasSubstr("medium.thickness_mm: 20 mm is not used, since a volume has its own depth, 4 mm")));
+              Contains("ignored at medium.thickness_mm"));
 }
 
 // 64 px of 10 um are 5.46 mm at the dots and 4.09 mm at the mid-plane.
@@ -127,16 +125,16 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
   json = json_of({"info", "field", "unnamed.h5", "--dataset", "density"});
   EXPECT_TRUE(json["units"]["length"].is_null());
   EXPECT_THAT(json["units"]["assumed"].get<std::string>(), HasSubstr("taken as mm"));
-  EXPECT_THAT(json["warnings"].dump(), HasSubstr("unnamed.h5: lengths name no unit and are taken as mm"));
+  EXPECT_THAT(warnings_in(json), Contains("assumed at unnamed.h5"));
   std::string const unnamed = "kind = \"file\"\nfile = \"unnamed.h5\"\ndataset = \"density\"\nextrude = true";
   write("unnamed.toml", with_field(unnamed));
-  EXPECT_THAT(json_of({"design", "unnamed.toml"})["warnings"].dump(), HasSubstr("lengths name no unit"));
+  EXPECT_THAT(warnings_in(json_of({"design", "unnamed.toml"})), Contains("assumed at medium.field.file"));
   write("spaced.toml", with_field(unnamed + "\nspacing_mm = [0.1, 0.1, 0.1]"));
-  EXPECT_THAT(json_of({"design", "spaced.toml"})["warnings"].dump(), Not(HasSubstr("lengths name no unit")));
+  EXPECT_THAT(warnings_in(json_of({"design", "spaced.toml"})), Not(Contains("assumed at medium.field.file")));
   json = json_of({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "spaced.toml"});
-  EXPECT_THAT(json["warnings"].dump(), Not(HasSubstr("lengths name no unit")));
+  EXPECT_THAT(warnings_in(json), IsEmpty());
   EXPECT_THAT(succeed({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "setup.toml"}),
-              AllOf(HasSubstr("lengths name no unit and are taken as mm, so the field is 0.002 x 0.002"),
+              AllOf(HasSubstr("lengths have no unit in the file and are taken as mm, so the field is 0.002 x 0.002"),
                     HasSubstr("with lengths in metres"), HasSubstr("values are in kg m-3")));
 }
 
@@ -170,7 +168,7 @@ TEST_F(SilentMistakes, InfoReportsSpacingsThatTheFileDoesNotState) {
     EXPECT_TRUE(json[key][2].is_null()) << key;
   }
   EXPECT_TRUE(json["units"]["assumed"].is_null());
-  EXPECT_THAT(json["warnings"].dump(), AllOf(HasSubstr("give medium.field.spacing_mm"), Not(HasSubstr("taken as mm"))));
+  EXPECT_THAT(warnings_in(json), Contains("assumed at n_nan_spacing.nrrd"));
   EXPECT_THAT(succeed({"info", "field", partial}), HasSubstr("spacing 1 x 1.2 x (not stated in the file)"));
 
   Hdf5Writer file(in("bare.h5").string(), {"test field", 1, "", 0, "cpu"});
@@ -183,13 +181,6 @@ TEST_F(SilentMistakes, InfoReportsSpacingsThatTheFileDoesNotState) {
   EXPECT_THAT(succeed({"info", "field", "bare.h5"}), HasSubstr("spacing not stated in the file"));
 }
 
-/// Number of occurrences of a text.
-std::size_t count_of(std::string const& piece, std::string const& text) {
-  std::size_t count = 0;
-  for (std::size_t at = 0; (at = text.find(piece, at)) != std::string::npos; at += piece.size()) ++count;
-  return count;
-}
-
 // The warning of peak locking is given for frames that correlate, and only once.
 TEST_F(SilentMistakes, SmallDotsAreWarnedOfOnceAndOnlyWhereFramesCorrelate) {
   std::vector<std::string> const small{"--set", "target.dot_diameter_px=1", "--set", "camera.pixels=[256,256]"};
@@ -197,22 +188,20 @@ TEST_F(SilentMistakes, SmallDotsAreWarnedOfOnceAndOnlyWhereFramesCorrelate) {
   std::vector<std::string> other = small;
   other.insert(other.end(), {"--set", "target.seed=8"});
   render("other", other);
-  std::string const locking = "px peak locking occurs";
-  EXPECT_EQ(count_of(locking, json_of({"correlate", "case"})["warnings"].dump()), 1u);
-  EXPECT_EQ(count_of(locking, gladstone({"compare", "case", "--no-figures"}).err), 1u);
+  auto const locks_once = Contains("unsuitable").Times(1);
+  EXPECT_THAT(warnings_in(json_of({"correlate", "case"})), locks_once);
+  EXPECT_THAT(warnings_in(json_of({"compare", "case", "--no-figures"})), locks_once);
   auto const correlated = [this](std::string const& flow) {
     std::string const output =
         gladstone({"correlate", "case/reference.tif", flow, "-o", "vectors.csv", "--json", "--quiet"}).out;
-    return nlohmann::json::parse(output)["warnings"].dump();
+    return warnings_in(nlohmann::json::parse(output));
   };
-  EXPECT_EQ(count_of(locking, correlated("case/flow.tif")), 1u);
-  std::string const unrelated = correlated("other/flow.tif");
-  EXPECT_THAT(unrelated, HasSubstr("the frames do not correlate"));
-  EXPECT_EQ(count_of(locking, unrelated), 0u) << unrelated;
+  EXPECT_THAT(correlated("case/flow.tif"), locks_once);
+  EXPECT_THAT(correlated("other/flow.tif"), ElementsAre("unreliable"));
   std::filesystem::copy(in("other/flow.tif"), in("case/flow.tif"), std::filesystem::copy_options::overwrite_existing);
   std::string const mixed = gladstone({"correlate", "case", "--json"}).out;
-  EXPECT_THAT(mixed, HasSubstr("the frames do not correlate"));
-  EXPECT_EQ(count_of(locking, nlohmann::json::parse(mixed)["warnings"].dump()), 0u) << mixed;
+  EXPECT_THAT(warnings_in(nlohmann::json::parse(mixed)), Contains("unreliable"));
+  EXPECT_THAT(warnings_in(nlohmann::json::parse(mixed)), Not(locks_once));
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST_F(SlurmCommand, AsksTheClusterHowLargeItsArraysMayBe) {
   EXPECT_THAT(sweep_run({"--dry-run"}).out, HasSubstr("\n0-1\n2-3\nEND\n"));  // 2 tasks of 2, since 4 would not fit
   Outcome const outcome = sweep_run({"--cases-per-task", "1"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("use --cases-per-task 2 or more"));
+  EXPECT_THAT(outcome.err, HasSubstr("--cases-per-task: "));
 }
 
 TEST_F(SlurmCommand, AWholeStudyIsNotSubmitted) {

@@ -27,8 +27,8 @@ TEST(FieldUnits, AreKnownByTheirUsualNames) {
 
 TEST(FieldUnits, SayWhatHadToBeAssumed) {
   EXPECT_THAT((FieldUnits{false, "", "", ""}.assumed()), HasSubstr("1 mm apart"));
-  EXPECT_THAT((FieldUnits{true, "", "", ""}.assumed()), HasSubstr("no unit and are taken as mm"));
-  EXPECT_THAT((FieldUnits{true, "1", "", ""}.assumed()), HasSubstr("no unit and are taken as mm"));
+  EXPECT_THAT((FieldUnits{true, "", "", ""}.assumed()), HasSubstr("no unit in the file and are taken as mm"));
+  EXPECT_THAT((FieldUnits{true, "1", "", ""}.assumed()), HasSubstr("no unit in the file and are taken as mm"));
   EXPECT_THAT((FieldUnits{true, "m", "", ""}.assumed()), IsEmpty());
   EXPECT_EQ((FieldUnits{true, "m", "", ""}.metres()), 1.0);
 }

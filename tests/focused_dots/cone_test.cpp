@@ -26,7 +26,8 @@ TEST(ConeAveraging, KeepsTheFractionOfEq9ThatTheConeLeaves) {
     double wavelength, kept, spread;
   };
   for (Case const& one : {Case{4e-3, 0.620565, 0.3519}, Case{8e-3, 0.894131, 0.1039}}) {
-    Scene scene = scene_with_dots(sinusoid_setup(one.wavelength, 0.5), {{31.5, 31.5}, {31.5, 5}, {28, 60}}, 1 << 13);
+    PlannedScene scene =
+        scene_with_dots(sinusoid_setup(one.wavelength, 0.5), {{31.5, 31.5}, {31.5, 5}, {28, 60}}, 1 << 13);
     GroundTruth const truth = trace_truth(scene);
     for (std::size_t i = 0; i < truth.size(); ++i) {
       EXPECT_NEAR(truth.displacement_px[i].x / truth.eq9_px[i].x, one.kept, 1e-3) << i;
@@ -55,7 +56,7 @@ TEST(ConeAveraging, FractionsAreThoseOfTheBesselAverage) {
 TEST(ConeAveraging, ADotsDiscAveragesToo) {
   auto setup = sinusoid_setup(4e-3, 0.5);
   setup.target.dot_diameter_px = 3;
-  Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 14);
+  PlannedScene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 14);
   GroundTruth const truth = trace_truth(scene);
   double const v = pi * 0.75 * setup.dot_diameter() / 4e-3;
   double const disc = 2 * std::cyl_bessel_j(1.0, v) / v;
@@ -77,7 +78,7 @@ TEST(ConeAveraging, QuadraticFieldSpreadsAPointByTheConesWidth) {
   setup.medium.field.where = "test";
   setup.medium.field.spacing = Vec3d{0.5e-3, 2e-3, 1e-3};
   setup.medium.field.extrude = true;
-  Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 12);
+  PlannedScene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 12);
   GroundTruth const truth = trace_truth(scene);
   double const cone = 0.105 / 11 * 0.25, n0 = 1 + 2.26e-4 * 1.225;
   double const spread = 0.25 * 2.26e-4 * 0.01 * c * cone / (4 * n0) * scene.imaging.magnification / 10e-6;

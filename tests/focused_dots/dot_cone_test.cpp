@@ -113,10 +113,10 @@ TEST(CorrectedCone, FindsTheRimThatTheMediumMovedInOrOut) {
 TEST(ConeRule, IntegratesALensInClosedForm) {
   double const d = 20.0, b = 0.02;
   auto const setup = table1_setup(64);
-  Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
+  PlannedScene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
   scene.medium.finest = 1e-4;
   LensTable const lens(d, b);
-  OwnedDotModel const owned(focused_dots(scene).value(), scene.dots, lens.table, false);
+  OwnedDotModel const owned(focused_dots(scene, scene.plan).value(), scene.dots, lens.table, false);
   CorrectedCone const cone = lens.cone();
   ConeRule const& rule = owned.model.cone;
   std::vector<double> rims;
@@ -183,10 +183,12 @@ TEST_P(TableAgainstRays, AgreesOnTruthAndLight) {
   setup.medium.field = dns_plane(instant);
   setup.lens.f_number = f_number;
   setup.target.dot_diameter_px = dot_px;
-  Scene scene = scene_with_dots(setup, {{17.3, 17.8}, {77.6, 17.1}, {17.9, 77.4}, {77.2, 77.5}}, 256), many = scene;
-  many.rays_per_dot = 65536;
-  Rendering const exact = RaysRenderer().render(many, many.dots, RenderImages::yes, RenderTheory::no);
-  Rendering const found = FocusedDotsRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+  PlannedScene scene = scene_with_dots(setup, {{17.3, 17.8}, {77.6, 17.1}, {17.9, 77.4}, {77.2, 77.5}}, 256),
+               many = scene;
+  many.plan.rays = 65536;
+  Rendering const exact = RaysRenderer().render(many, many.plan, many.dots, RenderImages::yes, RenderTheory::no);
+  Rendering const found =
+      FocusedDotsRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no);
   ASSERT_TRUE(found.left.empty());
   for (std::size_t dot = 0; dot < found.truth.size(); ++dot) {
     Vec2d const off = found.truth.displacement_px[dot] - exact.truth.displacement_px[dot];

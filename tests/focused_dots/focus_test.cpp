@@ -15,7 +15,7 @@ TEST(ChiefRays, TruthIsTheChiefRaysDisplacement) {
   auto setup = table1_setup(128);
   setup.lens.f_number = std::numeric_limits<double>::infinity();
   setup.medium.field = uniform_gradient(50, -20);
-  Scene scene = scene_with_dots(setup, {{63.5, 63.5}, {33.5, 63.5}}, 100);
+  PlannedScene scene = scene_with_dots(setup, {{63.5, 63.5}, {33.5, 63.5}}, 100);
   ASSERT_TRUE(scene.chief_rays_only());
   Rendering const rendering = render_all(scene);
   auto const vignetted = static_cast<std::size_t>(RayStatus::vignetted);
@@ -41,7 +41,7 @@ TEST(ChiefRays, DoNotAverage) {
   setup.lens.f_number = std::numeric_limits<double>::infinity();
   setup.target.dot_diameter_px = 0;
   setup.medium.field = Sinusoid<double>::wave(1e-3, 4e-3);
-  Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1);
+  PlannedScene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1);
   GroundTruth const truth = trace_truth(scene);
   EXPECT_NEAR(truth.displacement_px[0].x / truth.eq9_px[0].x, 1, 1e-4);
   EXPECT_NEAR(truth.displacement_std_px[0].x, 0, 1e-8);  // square root of the rounding errors of squares
@@ -56,7 +56,7 @@ TEST(Defocus, BlursByThePupilAndKeepsTheMagnification) {
   setup.lens.focus = Focus::medium;
   setup.target.dot_diameter_px = 0;
   auto const at = lattice(256, 3, 80);
-  Scene scene = scene_with_dots(setup, at, 1 << 14);
+  PlannedScene scene = scene_with_dots(setup, at, 1 << 14);
   double const sensor = 0.105 * 0.75 / (0.75 - 0.105), sharp = 0.105 / 0.895;
   EXPECT_NEAR(scene.imaging.magnification, sensor, 1e-15);
   double const diameter = 0.105 / 11 * (sensor / sharp - 1) / 10e-6;
@@ -76,7 +76,7 @@ TEST(Defocus, SpreadsTheDotsLightOverTheBlurDisc) {
   auto setup = table1_setup(96);
   setup.lens.focus = Focus::medium;
   setup.target.dot_diameter_px = 0;
-  Scene scene = scene_with_dots(setup, {{47.5, 47.5}}, 1 << 14);
+  PlannedScene scene = scene_with_dots(setup, {{47.5, 47.5}}, 1 << 14);
   Rendering const rendering = render_all(scene);
   double const radius = 38.84 / 2, even = 1 / (3.14159265 * radius * radius);
   double inside = 0;
@@ -98,7 +98,7 @@ TEST(Defocus, DisplacementFollowsTheActualMagnification) {
   auto setup = table1_setup(96);
   setup.lens.focus = Focus::medium;
   setup.medium.field = uniform_gradient(100, 0);
-  Scene scene = scene_with_dots(setup, {{47.5, 47.5}}, 1 << 15);
+  PlannedScene scene = scene_with_dots(setup, {{47.5, 47.5}}, 1 << 15);
   GroundTruth const truth = trace_truth(scene);
   double const M = 0.105 * 0.75 / (0.75 - 0.105), n0 = 1 + 2.26e-4 * 1.225;
   EXPECT_NEAR(truth.eq9_px[0].x, -M * 0.25 * 2.26e-4 * 0.01 * 100 / n0 / 10e-6, 1e-9);

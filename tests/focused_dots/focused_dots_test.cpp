@@ -48,12 +48,12 @@ TEST(Memory, OfATableIsKnownFromItsSetup) {
   for (FieldSetup const& field : {dns_plane("late"), sinusoid(0.1, 2e-3)}) {
     auto setup = table1_setup(256);
     setup.medium.field = field;
-    Scene scene = build_scene(setup);
+    PlannedScene scene(build_scene(setup));
     for (int const fineness : {1, 2}) {
       setup.render.rays_per_dot.reset();
       if (fineness == 1) setup.render.rays_per_dot = 32;
-      scene.fineness = fineness;
-      DeflectionTableLayout const plan(focused_dots(scene).value(), scene.dots, 0);
+      scene.plan.fineness = fineness;
+      DeflectionTableLayout const plan(focused_dots(scene, scene.plan).value(), scene.dots, 0);
       ASSERT_TRUE(plan.wanted());
       EXPECT_NEAR(table_bytes_needed(setup) / static_cast<double>(plan.table.bytes()), 1, 0.1) << fineness;
     }

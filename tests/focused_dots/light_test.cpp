@@ -32,7 +32,7 @@ TEST(Light, OfADotsImageIsItsFlux) {
     setup.medium.field = uniform_gradient(60, -80);
     // the stop's edge cuts the discs to which rays are sent: N^(-3/4) for N points, 1.2e-3 for 8192
     bool const by_rays = spot == SpotModel::airy || spot == SpotModel::none;
-    Scene scene = scene_with_dots(setup, {{30.3, 33.8}}, by_rays ? 8192 : 32);
+    PlannedScene scene = scene_with_dots(setup, {{30.3, 33.8}}, by_rays ? 8192 : 32);
     Rendering const rendering = render_all(scene);
     Vec2d const flux = rendering.truth.flux[0];
     double const reference = sum_of(rendering.light.reference), flow = sum_of(rendering.light.flow);
@@ -47,7 +47,7 @@ TEST(Light, OfADotsImageIsItsFlux) {
 TEST(Light, IsTheDotsAreaTimesTheMeanCosFour) {
   auto const setup = table1_setup(128);
   double const area = pi / 4 * 9, cone = 1 - std::pow(0.105 / 22, 2);
-  Scene scene = scene_with_dots(setup, {{63.5, 63.5}, {10, 20}}, 64);
+  PlannedScene scene = scene_with_dots(setup, {{63.5, 63.5}, {10, 20}}, 64);
   GroundTruth const truth = trace_truth(scene);
   EXPECT_NEAR(truth.flux[0].x / area, cone, 1e-8);
   double const cosine2 = 1 / (1 + dot(scene.dots.centre[1], scene.dots.centre[1]));
@@ -59,7 +59,7 @@ TEST(Light, IsTheDotsAreaTimesTheMeanCosFour) {
 TEST(Light, OfAFullyLitAreaIsOne) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 40;
-  Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 15);
+  PlannedScene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 15);
   Rendering const rendering = render_all(scene);
   double mean = 0;
   for (int row = 26; row < 37; ++row) {
@@ -77,7 +77,7 @@ TEST(Light, OfADotIsCentredWhereTruthSays) {
   setup.lens.spot = SpotModel::seed_eq8;
   setup.medium.field = dns_plane("kepeak");
   for (Vec2d const at : {Vec2d{31.5, 31.5}, Vec2d{28.2, 35.7}, Vec2d{36.1, 27.4}}) {
-    Scene scene = scene_with_dots(setup, {at}, 1 << 13);
+    PlannedScene scene = scene_with_dots(setup, {at}, 1 << 13);
     Rendering const rendering = render_all(scene);
     Vec2d const reference = centroid_of(rendering.light.reference), flow = centroid_of(rendering.light.flow);
     Vec2d const shift = rendering.truth.displacement_px[0];
@@ -98,9 +98,9 @@ TEST(Light, AtTheBorderIsThatOfALargerSensor) {
   for (FieldSetup const& field : {FieldSetup{}, sinusoid(0.2, 4e-3), dns_plane("kepeak")}) {
     auto setup = table1_setup(64);
     setup.medium.field = field;
-    Scene small = scene_with_dots(setup, small_px, 100);
+    PlannedScene small = scene_with_dots(setup, small_px, 100);
     setup.camera.columns = setup.camera.rows = 96;
-    Scene large = scene_with_dots(setup, large_px, 100);
+    PlannedScene large = scene_with_dots(setup, large_px, 100);
     Rendering const seen = render_all(small), whole = render_all(large);
     EXPECT_GT(seen.light.flow(0, 27), 0.05);
     for (int row = 0; row < 64; ++row) {
@@ -114,7 +114,7 @@ TEST(Light, AtTheBorderIsThatOfALargerSensor) {
 
 // The image of white paper: cos^4 of the angle to the axis.
 TEST(Light, OfWhitePaperFallsWithCosFour) {
-  Scene const scene = build_scene(table1_setup(101));
+  PlannedScene const scene(build_scene(table1_setup(101)));
   Image<double> const white = render_white_light(scene);
   EXPECT_EQ(white(50, 50), 1.0);
   double const tangent = 50 * 10e-6 / 0.117318436;
@@ -127,10 +127,10 @@ TEST(Light, OfWhitePaperFallsWithCosFour) {
 TEST(Light, OfDarkDotsIsWhitePaperLessTheDots) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(100, 50);
-  Scene bright = scene_with_dots(setup, {{20, 20}, {44, 30}}, 256);
+  PlannedScene bright = scene_with_dots(setup, {{20, 20}, {44, 30}}, 256);
   Rendering const dots = render_all(bright);
   setup.target.polarity = Polarity::dark;
-  Scene dark = scene_with_dots(setup, {{20, 20}, {44, 30}}, 256);
+  PlannedScene dark = scene_with_dots(setup, {{20, 20}, {44, 30}}, 256);
   Rendering const paper = render_all(dark);
   Image<double> const white = render_white_light(dark);
   for (int row = 0; row < 64; ++row) {
@@ -143,7 +143,7 @@ TEST(Light, OfDarkDotsIsWhitePaperLessTheDots) {
   EXPECT_LT(paper.light.reference(20, 20), 0.3);
   // the middle of a large dark dot is black
   setup.target.dot_diameter_px = 30;
-  Scene large = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 14);
+  PlannedScene large = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 14);
   EXPECT_NEAR(render_all(large).light.reference(31, 31), 0, 0.05);
 }
 

@@ -11,7 +11,7 @@ namespace gladstone {
 struct PictureError {
   double rms_levels = 0;  ///< grey levels of 12 bits, with the brightest pixel of the correct image at 90 % of full
                           ///< scale
-  int lit = 0;            ///< pixels
+  int lit = 0;            ///< number of these pixels
 };
 
 inline PictureError picture_error(Image<double> const& found, Image<double> const& right) {

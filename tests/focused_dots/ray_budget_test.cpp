@@ -12,19 +12,17 @@
 namespace gladstone {
 namespace {
 
-/// Returns the ray budget of a scene with rays_per_dot = "auto", by the fast renderer if it supports the scene.
-RayBudget plan_rays_anew(Scene& scene) {
+/// Plans the rays of a scene with rays_per_dot = "auto", by the fast renderer if it supports the scene.
+RenderPlan plan_rays_anew(PlannedScene& scene) {
   scene.setup.render.rays_per_dot.reset();
-  auto const dots = focused_dots(scene);
-  RayBudget const budget = dots ? determine_ray_budget(*dots) : determine_ray_budget_by_tracing(scene);
-  scene = with_rays(std::move(scene), budget);
-  return budget;
+  auto const dots = focused_dots(scene, scene.plan);
+  return scene.plan = dots ? plan_rays_by_table(*dots) : plan_rays_by_tracing(scene, scene.plan);
 }
 
 /// Returns the truth of a scene with another step and the same rays.
-GroundTruth truth_at_step(Scene const& scene, double step) {
-  Scene other = scene;
-  other.step = step;
+GroundTruth truth_at_step(PlannedScene const& scene, double step) {
+  PlannedScene other = scene;
+  other.plan.step = step;
   return trace_truth(other);
 }
 
@@ -36,13 +34,13 @@ TEST(PlanStep, HalvingChangesNoDotByATenThousandthOfAPixel) {
     auto setup = table1_setup(512);
     setup.target.dot_diameter_px = 0;
     setup.medium.field = dns_plane(instant);
-    Scene scene = scene_with_dots(setup, lattice(512, 14, 36), 16);
+    PlannedScene scene = scene_with_dots(setup, lattice(512, 14, 36), 16);
     IntegrationStep const plan = plan_step(scene);
     EXPECT_LT(plan.change_px, 1e-4);
-    EXPECT_EQ(scene.step, plan.step_mm * 1e-3);
-    EXPECT_LE(scene.step, scene.medium.coarsest_step);
-    EXPECT_GE(scene.pupil_margin, plan.largest_shift);
-    GroundTruth const coarse = truth_at_step(scene, scene.step), fine = truth_at_step(scene, scene.step / 2);
+    EXPECT_EQ(scene.plan.step, plan.step_mm * 1e-3);
+    EXPECT_LE(scene.plan.step, scene.medium.coarsest_step);
+    EXPECT_GE(scene.plan.pupil_margin, plan.largest_shift);
+    GroundTruth const coarse = truth_at_step(scene, scene.plan.step), fine = truth_at_step(scene, scene.plan.step / 2);
     std::size_t moved = 0;
     for (std::size_t i = 0; i < coarse.size(); ++i) {
       if (coarse.rays[i] != fine.rays[i]) continue;
@@ -58,35 +56,35 @@ TEST(PlanStep, ResolvesCellsAndShocks) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("late");
   setup.medium.interpolation = FieldInterpolation::trilinear;
-  Scene trilinear = scene_with_dots(setup, {{20, 20}, {40, 45}}, 1);
-  EXPECT_LE(trilinear.step, 0.0625e-3 / 4);
+  PlannedScene trilinear = scene_with_dots(setup, {{20, 20}, {40, 45}}, 1);
+  EXPECT_LE(trilinear.plan.step, 0.0625e-3 / 4);
 
   setup = table1_setup(64);
   setup.medium.field = NormalShock<double>::front(1.5, 0.3, 0.4e-3, 0.3);
-  Scene shock = scene_with_dots(setup, {{20, 20}, {40, 45}}, 1);
-  EXPECT_LE(shock.step, 0.4e-3 / 4);
+  PlannedScene shock = scene_with_dots(setup, {{20, 20}, {40, 45}}, 1);
+  EXPECT_LE(shock.plan.step, 0.4e-3 / 4);
 }
 
 TEST(PlanStep, KeepsAGivenStepAndMeasuresIt) {
   auto setup = table1_setup(512);
   setup.medium.field = dns_plane("kepeak");
   setup.medium.step_mm = 5.0;
-  Scene scene = scene_with_dots(setup, lattice(512, 10, 50), 1);
+  PlannedScene scene = scene_with_dots(setup, lattice(512, 10, 50), 1);
   IntegrationStep const plan = plan_step(scene);
   EXPECT_EQ(plan.step_mm, 5.0);
-  EXPECT_EQ(scene.step, 5e-3);
+  EXPECT_EQ(scene.plan.step, 5e-3);
   EXPECT_GT(plan.change_px, 0);
   EXPECT_LT(plan.limiting_dot, 100u);
 }
 
 TEST(PlanRays, KeepsAGivenNumber) {
   auto setup = table1_setup(64);
-  Scene const scene = scene_with_dots(setup, {{30, 30}}, 77);
-  for (RayBudget const& budget :
-       {determine_ray_budget(focused_dots(scene).value()), determine_ray_budget_by_tracing(scene)}) {
-    EXPECT_EQ(budget.rays, 77u);
-    EXPECT_FALSE(budget.adaptive_criteria);
-    EXPECT_FALSE(budget.table_error) << "nothing was measured";
+  PlannedScene const scene = scene_with_dots(setup, {{30, 30}}, 77);
+  for (RenderPlan const& plan :
+       {plan_rays_by_table(focused_dots(scene, scene.plan).value()), plan_rays_by_tracing(scene, scene.plan)}) {
+    EXPECT_EQ(plan.rays, 77u);
+    EXPECT_FALSE(plan.adaptive_criteria);
+    EXPECT_FALSE(plan.table_error) << "nothing was measured";
   }
 }
 
@@ -95,8 +93,8 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
   auto setup = table1_setup(64);
   setup.lens.f_number = std::numeric_limits<double>::infinity();
   setup.target.dot_diameter_px = 0;
-  Scene scene = scene_with_dots(setup, {{30, 30}, {12, 40}}, 1);
-  RayBudget const plan = plan_rays_anew(scene);
+  PlannedScene scene = scene_with_dots(setup, {{30, 30}, {12, 40}}, 1);
+  RenderPlan const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.rays, 1u);
 }
 
@@ -106,10 +104,10 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
 TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
-  Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 512);
-  TableError const usual = measure_table_error(focused_dots(scene).value());
+  PlannedScene scene = scene_with_dots(setup, lattice(64, 4, 14), 512);
+  TableError const usual = measure_table_error(focused_dots(scene, scene.plan).value());
   EXPECT_EQ(usual.fineness, 1);
-  RayBudget const plan = plan_rays_anew(scene);
+  RenderPlan const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.fineness, 2);
   EXPECT_LT(plan.rays, 512u);  // the given number of the scene above, whose table is not finer
   TableError const error = plan.table_error.value();
@@ -123,8 +121,8 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
 TEST(PlanRays, IsIndependentOfDots) {
   auto setup = table1_setup(64);
   setup.medium.field = sinusoid(0.015, 5e-3);
-  Scene few = scene_with_dots(setup, {{21, 40}}, 1), many = scene_with_dots(setup, lattice(64, 4, 14), 1);
-  RayBudget const one = plan_rays_anew(few), other = plan_rays_anew(many);
+  PlannedScene few = scene_with_dots(setup, {{21, 40}}, 1), many = scene_with_dots(setup, lattice(64, 4, 14), 1);
+  RenderPlan const one = plan_rays_anew(few), other = plan_rays_anew(many);
   EXPECT_EQ(one.fineness, other.fineness);
   EXPECT_EQ(one.rays, other.rays);
   TableError const &a = one.table_error.value(), &b = other.table_error.value();
@@ -140,8 +138,8 @@ TEST(PlanRays, ReportsUnreachableTolerance) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   setup.lens.f_number = 4;
-  Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
-  RayBudget const plan = plan_rays_anew(scene);
+  PlannedScene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
+  RenderPlan const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.fineness, 2);
   EXPECT_GT(plan.table_error.value().image_levels, 0.5);
   EXPECT_GT(plan.table_error->excess(), 1);
@@ -153,13 +151,13 @@ TEST(PlanRays, ReportsUnreachableTolerance) {
 TEST(PlanRays, StaysWithinItsBudget) {
   auto setup = table1_setup(512);
   setup.lens.focus = Focus::medium;
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   plan_step(scene);
-  RayBudget const plan = plan_rays_anew(scene);
-  double const seconds = ray_seconds(scene) * static_cast<double>(plan.rays);
+  RenderPlan const plan = plan_rays_anew(scene);
+  double const seconds = ray_seconds(scene, scene.plan) * static_cast<double>(plan.rays);
   EXPECT_LE(seconds, source_budget_s);
   EXPECT_GT(2 * seconds, source_budget_s) << "twice as many would exceed the budget";
-  EXPECT_GT(measure_image_error(scene, scene.adaptive_criteria.value().level), image_tolerance_levels);
+  EXPECT_GT(measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria.value().level), image_tolerance_levels);
   scene.dots = select_dots(scene.dots, {0, 100, 200});
   for (std::int64_t const rays : render_all(scene).truth.rays_planned) {
     EXPECT_EQ(rays, static_cast<std::int64_t>(plan.rays));
@@ -170,13 +168,13 @@ TEST(PlanRays, StaysWithinItsBudget) {
 TEST(PlanRays, CountsTheTimeOfARay) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
-  Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
-  double const coarse = rays_seconds(scene), steps = scene.steps_across();
-  scene.step /= 10;
-  EXPECT_NEAR(rays_seconds(scene) - coarse, 16 * 9 * steps * 0.12e-6, 1e-12);
-  scene.step /= 1e5;  // a tenth of a second for every ray of a dot: none would be within the budget
-  EXPECT_GT(ray_seconds(scene), source_budget_s);
-  EXPECT_EQ(max_rays_per_source(scene), 1024u);
+  PlannedScene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
+  double const coarse = rays_seconds(scene, scene.plan), steps = scene.steps_across(scene.plan.step);
+  scene.plan.step /= 10;
+  EXPECT_NEAR(rays_seconds(scene, scene.plan) - coarse, 16 * 9 * steps * 0.12e-6, 1e-12);
+  scene.plan.step /= 1e5;  // a tenth of a second for every ray of a dot: none would be within the budget
+  EXPECT_GT(ray_seconds(scene, scene.plan), source_budget_s);
+  EXPECT_EQ(max_rays_per_source(scene, scene.plan), 1024u);
 }
 
 // The stated accuracy is reached: truth to 1e-3 px rms, and the measurement image to half a grey level of 12 bits, rms
@@ -184,17 +182,17 @@ TEST(PlanRays, CountsTheTimeOfARay) {
 TEST(PlanRays, EstimatedErrorMatchesReferenceWithManyRays) {
   auto setup = table1_setup(64);
   setup.medium.field = sinusoid(0.015, 5e-3);
-  Scene scene = scene_with_dots(setup, lattice(64, 3, 18), 1);
-  RayBudget const plan = plan_rays_anew(scene);
+  PlannedScene scene = scene_with_dots(setup, lattice(64, 3, 18), 1);
+  RenderPlan const plan = plan_rays_anew(scene);
   TableError const stated = plan.table_error.value();
   // An excess of 1 is the goal: 1e-3 px of the truth, or half a level of images.
   ASSERT_LE(stated.excess(), 1) << plan.rays << " rays, " << stated.truth_px << " px, " << stated.image_levels
                                 << " levels";
   EXPECT_EQ(stated.bits, 12);
   Rendering const chosen = render_all(scene);
-  Scene many = scene;
-  many.rays_per_dot = 65536;
-  Rendering const reference = RaysRenderer().render(many, many.dots, RenderImages::yes, RenderTheory::no);
+  PlannedScene many = scene;
+  many.plan.rays = 65536;
+  Rendering const reference = RaysRenderer().render(many, many.plan, many.dots, RenderImages::yes, RenderTheory::no);
   double square = 0;
   for (std::size_t i = 0; i < chosen.truth.size(); ++i) {
     Vec2d const error = chosen.truth.displacement_px[i] - reference.truth.displacement_px[i];
@@ -208,11 +206,11 @@ TEST(PlanRays, EstimatedErrorMatchesReferenceWithManyRays) {
 
 /// Returns the error of the measurement image by the fast renderer, compared with 65,536 rays alone, whose scatter is a
 /// third of a level.
-double table_is_off(Scene const& scene) {
-  Scene fast = scene, many = scene;
-  many.rays_per_dot = 65536;
-  Rendering const exact = RaysRenderer().render(many, many.dots, RenderImages::yes, RenderTheory::no);
-  Rendering const found = FocusedDotsRenderer().render(fast, fast.dots, RenderImages::yes, RenderTheory::no);
+double table_is_off(PlannedScene const& scene) {
+  PlannedScene fast = scene, many = scene;
+  many.plan.rays = 65536;
+  Rendering const exact = RaysRenderer().render(many, many.plan, many.dots, RenderImages::yes, RenderTheory::no);
+  Rendering const found = FocusedDotsRenderer().render(fast, fast.plan, fast.dots, RenderImages::yes, RenderTheory::no);
   EXPECT_TRUE(found.left.empty());
   return picture_error(found.light.flow, exact.light.flow).rms_levels;
 }
@@ -223,8 +221,8 @@ TEST(MeasureTableError, TellsHowFarImagesAreOff) {
   for (char const* instant : {"kepeak", "late"}) {
     auto setup = table1_setup(64);
     setup.medium.field = dns_plane(instant);
-    Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 128);
-    TableError const told = measure_table_error(focused_dots(scene).value());
+    PlannedScene const scene = scene_with_dots(setup, lattice(64, 3, 20), 128);
+    TableError const told = measure_table_error(focused_dots(scene, scene.plan).value());
     double const found = table_is_off(scene);
     EXPECT_LT(told.image_levels, 2 * found) << instant << " found " << found;
     EXPECT_GT(std::hypot(told.image_levels, 0.4), found / 2) << instant << " found " << found;
@@ -236,8 +234,8 @@ TEST(MeasureTableError, TellsHowFarImagesAreOff) {
 TEST(MeasureTableError, TellsWhatItCanResolve) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(20, 10);
-  Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
-  TableError const told = measure_table_error(focused_dots(scene).value());
+  PlannedScene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
+  TableError const told = measure_table_error(focused_dots(scene, scene.plan).value());
   EXPECT_GT(told.truth_resolution_px, 0);
   EXPECT_LT(told.truth_resolution_px, 1e-4);
   EXPECT_GT(told.image_resolution_levels, 0);
@@ -251,8 +249,8 @@ TEST(MeasureTableError, FollowsDotsThatMoveFar) {
   for (double const gradient : {400.0, 9000.0}) {
     auto setup = table1_setup(64);
     setup.medium.field = uniform_gradient(gradient, 10);
-    Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
-    told[gradient > 400 ? 1 : 0] = measure_table_error(focused_dots(scene).value()).image_resolution_levels;
+    PlannedScene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
+    told[gradient > 400 ? 1 : 0] = measure_table_error(focused_dots(scene, scene.plan).value()).image_resolution_levels;
   }
   EXPECT_GT(told[0], 0);
   EXPECT_GT(told[1], told[0] / 2);

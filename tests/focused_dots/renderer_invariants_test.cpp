@@ -19,13 +19,13 @@ bool same_bits(Range const& a, Range const& b) {
 TEST(FocusedDotsRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   Rendering first;
   for (int const threads : {1, 2, 7}) {
     set_thread_count(threads);
-    Scene again = scene;
+    PlannedScene again = scene;
     plan_step(again);
-    again.rays_per_dot = 32;
+    again.plan.rays = 32;
     Rendering rendering = render_all(again);
     if (threads == 1) {
       first = std::move(rendering);
@@ -47,7 +47,7 @@ TEST(FocusedDotsRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
 
 TEST(FocusedDotsRenderer, WithoutAMediumBothFramesAreEqual) {
   auto const setup = table1_setup(48);
-  Scene scene = scene_with_dots(setup, lattice(48, 4, 10), 64);
+  PlannedScene scene = scene_with_dots(setup, lattice(48, 4, 10), 64);
   Rendering const rendering = render_all(scene);
   EXPECT_TRUE(same_bits(rendering.light.reference, rendering.light.flow));
   for (std::size_t i = 0; i < rendering.truth.size(); ++i) {
@@ -79,7 +79,7 @@ TEST(FocusedDotsRenderer, UniformDensityDisplacesNothing) {
       setup.medium.field = one.field;
       setup.medium.faces = one.faces;
       setup.medium.integrator = integrator;
-      Scene scene = scene_with_dots(setup, lattice(512, 3, 200), 64);
+      PlannedScene scene = scene_with_dots(setup, lattice(512, 3, 200), 64);
       GroundTruth const truth = trace_truth(scene);
       for (std::size_t i = 0; i < truth.size(); ++i) {
         EXPECT_LE(std::abs(truth.displacement_px[i].x), 1e-11);
@@ -95,7 +95,7 @@ TEST(FocusedDotsRenderer, ReferenceIsWhereThePinholeSees) {
   auto setup = table1_setup(256);
   setup.target.dot_diameter_px = 0;
   auto const at = lattice(256, 5, 45);
-  Scene scene = scene_with_dots(setup, at, 64);
+  PlannedScene scene = scene_with_dots(setup, at, 64);
   GroundTruth const truth = trace_truth(scene);
   for (std::size_t i = 0; i < at.size(); ++i) {
     EXPECT_NEAR(truth.reference_px[i].x, at[i].x, 1e-9);
@@ -110,10 +110,11 @@ TEST(FocusedDotsRenderer, AimsAgainAtStronglyDeflectedDot) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 0;
   setup.medium.field = uniform_gradient(1500, -800);
-  Scene scene = scene_with_dots(setup, {{32, 32}}, 32);
+  PlannedScene scene = scene_with_dots(setup, {{32, 32}}, 32);
   double const shift = 2.26e-4 * 1700 * 0.01 * 0.75;  // K g L_z Z_A
   ASSERT_GT(shift, 0.5 * scene.imaging.entrance_pupil / 2);
-  Rendering const rendering = FocusedDotsRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  Rendering const rendering =
+      FocusedDotsRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::yes);
   ASSERT_TRUE(rendering.left.empty());
   GroundTruth const& truth = rendering.truth;
   EXPECT_NEAR(truth.flux[0].y / truth.flux[0].x, 1, 1e-3);
@@ -128,13 +129,14 @@ TEST(FocusedDotsRenderer, ADotIsTheSameBitsAloneAndAmongManyOthers) {
   for (FieldSetup const& field : {dns_plane("late"), sinusoid(0.1, 4e-3)}) {
     auto setup = table1_setup(128);
     setup.medium.field = field;
-    Scene many = scene_with_dots(setup, lattice(128, 35, 3.6), 32);
-    Rendering const all = FocusedDotsRenderer().render(many, many.dots, RenderImages::no, RenderTheory::yes);
+    PlannedScene many = scene_with_dots(setup, lattice(128, 35, 3.6), 32);
+    Rendering const all = FocusedDotsRenderer().render(many, many.plan, many.dots, RenderImages::no, RenderTheory::yes);
     ASSERT_TRUE(all.left.empty());
     for (std::size_t const dot : {0u, 1224u, 35u * 17u + 16u, 35u * 6u + 34u}) {
-      Scene alone = many;
+      PlannedScene alone = many;
       alone.dots.centre = {many.dots.centre[dot]};
-      Rendering const one = FocusedDotsRenderer().render(alone, alone.dots, RenderImages::yes, RenderTheory::yes);
+      Rendering const one =
+          FocusedDotsRenderer().render(alone, alone.plan, alone.dots, RenderImages::yes, RenderTheory::yes);
       EXPECT_EQ(one.truth.displacement_px[0], all.truth.displacement_px[dot]);
       EXPECT_EQ(one.truth.reference_px[0], all.truth.reference_px[dot]);
       EXPECT_EQ(one.truth.displacement_error_px[0], all.truth.displacement_error_px[dot]);
@@ -149,7 +151,7 @@ TEST(FocusedDotsRenderer, ADotIsTheSameBitsAloneAndAmongManyOthers) {
 TEST(FocusedDotsRenderer, TheLightOfADotIsTheSameAloneAndAmongOthers) {
   auto setup = table1_setup(96);
   setup.medium.field = dns_plane("late");
-  Scene many = scene_with_dots(setup, lattice(96, 20, 4.3), 32), alone = many, others = many;
+  PlannedScene many = scene_with_dots(setup, lattice(96, 20, 4.3), 32), alone = many, others = many;
   std::size_t const dot = 20 * 9 + 11;
   alone.dots.centre = {many.dots.centre[dot]};
   others.dots.centre.erase(others.dots.centre.begin() + static_cast<std::ptrdiff_t>(dot));
@@ -166,7 +168,7 @@ TEST(FocusedDotsRenderer, DotsOutsideThePictureHaveTruthButNoLight) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 0;
   setup.medium.field = uniform_gradient(100, 0);
-  Scene scene = scene_with_dots(setup, {{-40, 32}}, 64);
+  PlannedScene scene = scene_with_dots(setup, {{-40, 32}}, 64);
   Rendering const rendering = render_all(scene);
   EXPECT_NEAR(rendering.truth.reference_px[0].x, -40, 1e-9);
   EXPECT_NEAR(rendering.truth.displacement_px[0].x, -0.66266, 0.002);

@@ -79,10 +79,10 @@ struct StraightTruth {
 /// Computes the displacement of one dot by rays through slices of the field, each of which deflects the ray by K grad
 /// rho dz/n0 at its intersection with the undeflected ray. The dot and the enlarged pupil are sampled by the additive
 /// recurrence of the four-dimensional golden ratio.
-StraightTruth straight_truth(PeriodicPlane const& plane, Scene const& scene, Vec2d centre, int rays) {
+StraightTruth straight_truth(PeriodicPlane const& plane, PlannedScene const& scene, Vec2d centre, int rays) {
   double const phi = 1.1673039782614187;  // real root of x^5 = x + 1
   double const step[4] = {1 / phi, std::pow(phi, -2), std::pow(phi, -3), std::pow(phi, -4)};
-  double const stop = scene.imaging.entrance_pupil / 2, wide = stop + scene.pupil_margin, z_b = scene.setup.z_b();
+  double const stop = scene.imaging.entrance_pupil / 2, wide = stop + scene.plan.pupil_margin, z_b = scene.setup.z_b();
   constexpr int slices = 12;
   double const dz = scene.setup.medium.thickness / slices;
   Vec2d clipped[2]{}, common[2]{}, unclipped{};
@@ -132,7 +132,7 @@ struct RmsRatio {
   double value() const { return std::sqrt(difference / signal); }
 };
 
-Scene dns_scene(std::string const& instant, int dots, double dot_px, std::uint64_t rays) {
+PlannedScene dns_scene(std::string const& instant, int dots, double dot_px, std::uint64_t rays) {
   auto setup = table1_setup(512);
   setup.target.dot_diameter_px = dot_px;
   setup.medium.field = dns_plane(instant);
@@ -142,9 +142,10 @@ Scene dns_scene(std::string const& instant, int dots, double dot_px, std::uint64
 /// Returns the rms difference between the renderer's truth and straight rays over the rms truth, for 20 dots. Each of
 /// the four scramblings of their rays has 2^13 points.
 double straight_ray_error(std::string const& instant, double dot_px) {
-  Scene scene = dns_scene(instant, 20, dot_px, 1 << 15);
-  GroundTruth const truth =
-      RaysRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no).truth;  // by ray tracing alone
+  PlannedScene scene = dns_scene(instant, 20, dot_px, 1 << 15);
+  GroundTruth const truth = RaysRenderer()
+                                .render(scene, scene.plan, scene.dots, RenderImages::no, RenderTheory::no)
+                                .truth;  // by ray tracing alone
   PeriodicPlane const plane(scene.setup.medium.field);
   RmsRatio ratio;
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -179,7 +180,7 @@ TEST(StopLimitedTruth, CannotBeHadWithoutClippingInEachFrame) {
     double unclipped, common;
   };
   for (Case const& one : {Case{"kepeak", 0.25, 0.16}, Case{"late", 0.02, 0.02}}) {
-    Scene scene = dns_scene(one.instant, 300, 0, 1);
+    PlannedScene scene = dns_scene(one.instant, 300, 0, 1);
     PeriodicPlane const plane(scene.setup.medium.field);
     RmsRatio unclipped, common;
     for (Vec2d const centre : scene.dots.centre) {

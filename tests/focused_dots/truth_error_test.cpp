@@ -22,22 +22,22 @@ struct Coverage {
 
 /// @param scene  with its number of rays
 /// @param seeds  number of seeds with which it is rendered
-Coverage coverage_of(Scene const& scene, std::uint64_t many_rays, int seeds) {
+Coverage coverage_of(PlannedScene const& scene, std::uint64_t many_rays, int seeds) {
   FocusedDotsRenderer fast;
   RaysRenderer general;
-  Renderer& renderer = focused_dots(scene) ? static_cast<Renderer&>(fast) : general;
+  Renderer& renderer = focused_dots(scene, scene.plan) ? static_cast<Renderer&>(fast) : general;
   auto const truth_of = [&](std::uint64_t rays, std::uint64_t seed) {
-    Scene other = scene;
-    other.setup.render.rays_per_dot = other.rays_per_dot = rays;
+    PlannedScene other = scene;
+    other.setup.render.rays_per_dot = other.plan.rays = rays;
     other.setup.render.seed = repeat_seed(scene.setup.render.seed, seed);
-    return renderer.render(other, other.dots, RenderImages::no, RenderTheory::no);
+    return renderer.render(other, other.plan, other.dots, RenderImages::no, RenderTheory::no);
   };
   Rendering const reference = truth_of(many_rays, 1000);
   Coverage coverage;
   coverage.table = reference.table;
   double within = 0, count = 0, told2 = 0, found2 = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    GroundTruth const truth = truth_of(scene.rays_per_dot, static_cast<std::uint64_t>(seed)).truth;
+    GroundTruth const truth = truth_of(scene.plan.rays, static_cast<std::uint64_t>(seed)).truth;
     for (std::size_t dot = 0; dot < truth.size(); ++dot) {
       if (std::isnan(truth.displacement_px[dot].x)) continue;  // fallback dot of the fast renderer
       Vec2d const off = truth.displacement_px[dot] - reference.truth.displacement_px[dot];
@@ -76,11 +76,11 @@ FieldSetup small_volume(std::string const& path) {
   return field;
 }
 
-// Of independent errors with a known standard error, two thirds are within it, 0.683 for normal ones. This must hold
-// for all kinds of truth: the integral of a table corrected by rays (a plane of turbulence, a wave), a volume whose
-// side faces require rays alone, and rays of a defocused lens. The error of the reference, many more rays with another
-// seed, is less than a tenth. With about 600 components, of which the two of a dot and all its seeds share the
-// reference, the standard deviation of the fraction is 2 to 3 %: 0.60 to 0.76.
+// If errors are independent and their standard error is known, two thirds of them are within it (0.683 for normally
+// distributed errors). This must hold for all kinds of truth: the integral of a table corrected by rays (a plane of
+// turbulence, a wave), a volume whose side faces require rays alone, and rays of a defocused lens. The error of the
+// reference, many more rays with another seed, is less than a tenth. With about 600 components, of which the two of a
+// dot and all its seeds share the reference, the standard deviation of the fraction is 2 to 3 %: 0.60 to 0.76.
 TEST(TruthError, TwoThirdsOfTheDotsLieWithinIt) {
   struct Case {
     char const* name;
@@ -103,7 +103,7 @@ TEST(TruthError, TwoThirdsOfTheDotsLieWithinIt) {
     auto setup = table1_setup(96);
     setup.medium.field = one.field;
     one.change(setup);
-    Scene const scene = scene_with_dots(setup, lattice(96, 6, 14), one.rays);
+    PlannedScene const scene = scene_with_dots(setup, lattice(96, 6, 14), one.rays);
     Coverage const coverage = coverage_of(scene, one.many_rays, 8);
     EXPECT_EQ(coverage.table, one.table) << one.name;
     EXPECT_GE(coverage.share, 0.60) << one.name << ": stated " << coverage.told << " px, actual " << coverage.found;
@@ -119,8 +119,9 @@ TEST(TruthError, AUniformGradientHasATableAtAnyThickness) {
     auto setup = table1_setup(96);
     setup.medium.field = uniform_gradient(75, 0);
     setup.medium.thickness = thickness;
-    Scene scene = scene_with_dots(setup, lattice(96, 5, 16), 64);
-    Rendering const rendering = FocusedDotsRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no);
+    PlannedScene scene = scene_with_dots(setup, lattice(96, 5, 16), 64);
+    Rendering const rendering =
+        FocusedDotsRenderer().render(scene, scene.plan, scene.dots, RenderImages::no, RenderTheory::no);
     EXPECT_EQ(rendering.table, TableState::made) << thickness;
     TruthAccuracy const accuracy = truth_accuracy(rendering.truth, 1e-3);
     EXPECT_EQ(accuracy.by_table, rendering.truth.size());
@@ -135,7 +136,7 @@ TEST(TruthError, IsZeroWithoutAFieldAndUnknownOfASingleRay) {
     auto setup = table1_setup(64);
     setup.medium.field = uniform_gradient(10, 0);
     change(setup);
-    Scene scene = scene_with_dots(setup, lattice(64, 4, 14), rays);
+    PlannedScene scene = scene_with_dots(setup, lattice(64, 4, 14), rays);
     return trace_truth(scene);
   };
   GroundTruth const empty = truth_with(64, [](BosSetup& setup) { setup.medium.field = {}; });

@@ -49,7 +49,7 @@ TEST(UniformGradient, MovesDotsAgainstTheGradient) {
     auto setup = table1_setup(64);
     setup.target.dot_diameter_px = 0;
     setup.medium.field = uniform_gradient(one.gradient.x, one.gradient.y);
-    Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
+    PlannedScene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
     GroundTruth const truth = trace_truth(scene);
     // Eq. 9 to the digits of the printed sensitivity; the truth differs by F27's theta^2, averaged over the cone, (4.77
     // mrad)^2/2 = 1.1e-5
@@ -74,7 +74,7 @@ TEST(UniformGradient, DepartsFromEq9ByTheSquareOfTheFieldAngle) {
       setup.target.dot_diameter_px = 0;
       setup.medium.faces = faces;
       setup.medium.field = uniform_gradient(along ? 0.1 : 0, along ? 0 : 0.1);
-      Scene scene = scene_with_dots(setup, {{0, 255.5}, {511, 255.5}}, 1);
+      PlannedScene scene = scene_with_dots(setup, {{0, 255.5}, {511, 255.5}}, 1);
       GroundTruth const truth = trace_truth(scene);
       for (std::size_t i = 0; i < 2; ++i) {
         double const theta2 = std::pow(scene.dots.centre[i].x, 2);
@@ -97,7 +97,7 @@ TEST(UniformGradient, ImagesShiftByTheTruth) {
     auto setup = table1_setup(96);
     setup.lens.spot = SpotModel::seed_eq8;
     setup.medium.field = uniform_gradient(gradient.x, gradient.y);
-    Scene scene = scene_with_dots(
+    PlannedScene scene = scene_with_dots(
         setup, {{20.3, 18.9}, {60.7, 25.2}, {35.5, 50.1}, {71.4, 73.8}, {22.6, 70.9}, {49.0, 33.3}}, 1 << 16);
     Rendering const rendering = render_all(scene);
     Vec2d truth{};
@@ -121,7 +121,7 @@ TEST(UniformGradient, IntegratorsAgree) {
     setup.target.dot_diameter_px = 0;
     setup.medium.field = uniform_gradient(100, 0);
     setup.medium.integrator = integrator;
-    Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
+    PlannedScene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
     displacement[i++] = trace_truth(scene).displacement_px[0];
   }
   EXPECT_NEAR(displacement[0].x, displacement[2].x, 1e-6);

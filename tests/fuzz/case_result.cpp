@@ -4,7 +4,8 @@
 
 using namespace gladstone;
 
-// The result of a case as it stands, and once more behind the hash that it should have, so that what follows is read.
+// Reads the input as the result of a case: first unchanged, then with the correct hash in front, so that the contents
+// are read, too.
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
   std::string_view const input = fuzz::text_of(data, size);
   fuzz::read(input, [&] { parse_result(std::string(input), "cases/0.json"); });

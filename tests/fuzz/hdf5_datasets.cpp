@@ -130,7 +130,7 @@ void write_dataset(hid_t file, Supply& supply) {
   H5Tclose(type);
 }
 
-/// The attribute "setup", where our files keep a text.
+/// Writes the attribute "setup", in which our files store a text.
 void write_attribute(hid_t file, Supply& supply) {
   hid_t const type = stored_type(supply.below(12));
   hsize_t const count = supply.below(3);

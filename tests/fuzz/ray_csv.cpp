@@ -1,4 +1,4 @@
-#include "render/rays/ray_planning.h"
+#include "render/scene/scene.h"
 #include "studies/case/ray_file.h"
 #include "tests/fuzz/input.h"
 
@@ -6,7 +6,7 @@ using namespace gladstone;
 
 namespace {
 
-/// A gradient between lens and target; its step is given, so that nothing is planned.
+/// A gradient between lens and target.
 Scene gradient_scene() {
   SetupDocument document = SetupDocument::from_text(R"(schema = 1
 experiment = "bos"
@@ -20,7 +20,6 @@ f_number = 11.0
 z_a_mm = 750.0
 z_d_mm = 250.0
 [medium]
-step_mm = 2.0
 [medium.field]
 kind = "uniform_gradient"
 gradient_kg_m4 = [20.0, 10.0, 0.0]
@@ -28,9 +27,7 @@ gradient_kg_m4 = [20.0, 10.0, 0.0]
 dots_per_32px_window = 1.0
 )",
                                                     "setup.toml");
-  Scene scene = build_scene(read_setup(document.root()));
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  return scene;
+  return build_scene(read_setup(document.root()));
 }
 
 }  // namespace
@@ -41,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   static Scene const scene = gradient_scene();
   std::string const path = fuzz::file_of(input, "rays.csv");
   fuzz::read(input, [&] {
-    traced_rays_csv(trace_rays(scene, read_rays(path, scene.setup.max_off_axis_distance()), Through::all));
+    traced_rays_csv(trace_rays(scene, 2e-3, read_rays(path, scene.setup.max_off_axis_distance()), Through::all));
   });
   return 0;
 }

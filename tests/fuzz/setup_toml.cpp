@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "analysis/correlation/correlation_settings.h"
 #include "render/scene/setup.h"
 #include "render/setup/setup_table.h"
+#include "studies/case/correlation_setup.h"
 #include "tests/fuzz/input.h"
 
 using namespace gladstone;

@@ -19,7 +19,7 @@ Vec2d truth(Vec2d c) {
 
 }  // namespace
 
-// Vectors as text of any program, through what a comparison does with their places.
+// Reads the input as a text file of vectors of any program, and processes the positions as a comparison does.
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
   std::string_view const input = fuzz::text_of(data, size);
   std::string const path = fuzz::file_of(input, "vectors.txt");

@@ -11,9 +11,9 @@
 
 #include "render/base/parallel.h"
 #include "render/light/lambert_sphere.h"
-#include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/sensor/detector.h"
+#include "tests/scene/planned_scene.h"
 
 namespace gladstone {
 namespace {
@@ -40,7 +40,7 @@ Setup piv_setup(ParticleScattering scattering = ParticleScattering::gaussian) {
   return setup;
 }
 
-Rendering by_formula(Scene const& scene, RenderImages images = RenderImages::yes) {
+Rendering by_formula(PlannedScene const& scene, RenderImages images = RenderImages::yes) {
   return render_ideal_images(ideal_images(scene).value(), scene.particles, ParticleLight::scattered, images);
 }
 
@@ -49,7 +49,7 @@ Rendering by_formula(Scene const& scene, RenderImages images = RenderImages::yes
 // that the lens subtends. The error of the error function is 1e-12, and the PSF is cut off where 4e-8 of the light
 // remain.
 TEST(IdealImages, AreAGaussianOverPixels) {
-  Scene scene = build_scene(piv_setup());
+  PlannedScene scene(build_scene(piv_setup()));
   Vec3d const first{0.3 * mm, -0.7 * mm, 0.4 * mm}, second{0.5 * mm, -0.8 * mm, -0.2 * mm};
   scene.particles.resize(1);
   scene.particles.place[0] = {first};
@@ -88,13 +88,13 @@ TEST(IdealImages, AreAGaussianOverPixels) {
 // of the lens' centre up to the square of the lens' half angle, (3.3 / 750)^2 = 2e-5. The images differ by less than
 // half a grey level at 12 bits, and the truth by rounding only.
 TEST(IdealImages, EqualThoseOfRaysInFocus) {
-  Scene scene = build_scene(piv_setup(ParticleScattering::lambert));
+  PlannedScene scene(build_scene(piv_setup(ParticleScattering::lambert)));
   ASSERT_GT(scene.particles.size(), 500u);
   Rendering const formula = by_formula(scene);
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene.rays_per_dot = 64;
+  plan_step(scene);
+  scene.plan.rays = 64;
   Rendering const rays =
-      RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+      RaysRenderer().render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered, RenderImages::yes);
   EXPECT_EQ(formula.table, TableState::by_formula);
   EXPECT_EQ(rays.table, TableState::by_rays);
   auto const brightest = *std::max_element(rays.light.reference.begin(), rays.light.reference.end());
@@ -116,7 +116,7 @@ TEST(IdealImages, EqualThoseOfRaysInFocus) {
 
 // Sums within a band of rows have a fixed order, whichever thread computes them.
 TEST(IdealImages, AreTheSameBitsOnAnyNumberOfThreads) {
-  Scene const scene = build_scene(piv_setup());
+  PlannedScene const scene(build_scene(piv_setup()));
   int const before = thread_count();
   set_thread_count(1);
   Rendering const one = by_formula(scene);
@@ -135,7 +135,7 @@ TEST(IdealImages, AreTheSameBitsOnAnyNumberOfThreads) {
 
 // Circle of confusion M D z / (Z - z) for z = 0.5 mm at f/16: 0.1628 * 6.5625 mm * 0.5 / 749.5 over 5 um.
 TEST(IdealImages, SayWhatBlurTheyLeaveOut) {
-  Scene scene = build_scene(piv_setup());
+  PlannedScene scene(build_scene(piv_setup()));
   for (auto& places : scene.particles.place) {
     for (Vec3d& place : places) place.z = 0;
   }
@@ -155,7 +155,7 @@ struct OneParticle {
     setup.camera.pixel_pitch = 1e-6;
     setup.piv->particles.amount = 1000;
     setup.piv->laser.thickness = 4 * mm;
-    Scene scene = build_scene(setup);
+    PlannedScene scene(build_scene(setup));
     scene.particles.resize(1);
     for (int pulse = 0; pulse < 2; ++pulse) {
       scene.particles.place[pulse] = {{2e-6, -3e-6, z}};
@@ -166,10 +166,10 @@ struct OneParticle {
     blur = ideal.blur();
     stated_error = ideal.largest_blur_error(scene.particles);
     Rendering const drawn = by_formula(scene);
-    scene = with_step(scene, determine_step_by_tracing(scene));
-    scene.rays_per_dot = 4096;
-    Rendering const traced =
-        RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+    plan_step(scene);
+    scene.plan.rays = 4096;
+    Rendering const traced = RaysRenderer().render_particles(scene, scene.plan, scene.particles,
+                                                             ParticleLight::scattered, RenderImages::yes);
     formula = shares(drawn.light.reference);
     rays = shares(traced.light.reference);
     distance_px = length(drawn.truth.reference_px[0] - traced.truth.reference_px[0]);
@@ -178,7 +178,7 @@ struct OneParticle {
   }
 
   /// Returns the relative change of the scattered light from the centre to the edge of the stop, along x and y.
-  static Vec2d variation_over_stop(Scene const& scene) {
+  static Vec2d variation_over_stop(PlannedScene const& scene) {
     Vec3d const place = scene.particles.place[0][0], lens = scene.camera.aim_plane.origin;
     LightWave<double> const wave = laser_sheet(scene.setup.piv->laser).wave(place, 0);
     auto const light = [&](Vec3d at) {
@@ -253,14 +253,14 @@ TEST(IdealImages, AreBlurredAsThoseOfRays) {
 
 // The circle of confusion in front of and behind the plane in focus: M D |z| / (2 (Z - z)), here with M = 105 / 645.
 TEST(IdealImages, WidenByTheCircleOfConfusion) {
-  Scene const scene = build_scene(piv_setup(ParticleScattering::lambert));
+  PlannedScene const scene(build_scene(piv_setup(ParticleScattering::lambert)));
   DefocusBlur const blur = ideal_images(scene)->blur();
   for (double const z : {-2 * mm, 0.0, 0.5 * mm}) {
     double const r = 105.0 / 645 * 6.5625 * mm / 2 * std::abs(z) / (750 * mm - z) / 5e-6;
     EXPECT_NEAR(blur.radius(z), r, 1e-12);
     EXPECT_NEAR(blur.width(z), std::sqrt(blur.sigma * blur.sigma + r * r / 4), 1e-12);
   }
-  Scene const neglected = build_scene(piv_setup());
+  PlannedScene const neglected(build_scene(piv_setup()));
   EXPECT_EQ(ideal_images(neglected)->blur().width(2 * mm), neglected.spot_sigma_px());
 }
 

@@ -8,6 +8,7 @@
 #include "render/base/error.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
+#include "tests/support/edge_integral.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/ideal_pairs.h"
 
@@ -107,8 +108,8 @@ TEST(PairModel, PixelsAddUpSharesInOrder) {
           int const x = column - print.column, y = row - print.row;
           if (x < 0 || y < 0 || x >= print.width || y >= print.width) continue;
           double const across =
-              spot.edge_integral(at.x, print.column, x + 1) - spot.edge_integral(at.x, print.column, x);
-          double const down = spot.edge_integral(at.y, print.row, y + 1) - spot.edge_integral(at.y, print.row, y);
+              edge_integral(spot, at.x, print.column, x + 1) - edge_integral(spot, at.x, print.column, x);
+          double const down = edge_integral(spot, at.y, print.row, y + 1) - edge_integral(spot, at.y, print.row, y);
           sum = std::fma(light * down, across, sum);
         }
         equal += sum == drawn.light.reference(column, row) ? 1 : 0;

@@ -171,8 +171,8 @@ TEST(MieScattering, LargeParticlesShineAsTheSquare) {
   EXPECT_NEAR(std::log(mean(320 * micrometre) / mean(40 * micrometre)) / std::log(8.0), 2, 0.015);
 }
 
-// A surrounding medium reduces the wavelength and the refractive index contrast: in a liquid of its own index, a
-// particle vanishes; otherwise it scatters like a sphere of m = n/n0 in light of wavelength lambda/n0.
+// A surrounding medium reduces the wavelength and the refractive index contrast: a particle vanishes in a liquid of
+// equal index; otherwise it scatters like a sphere of m = n/n0 in light of wavelength lambda/n0.
 TEST(MieScattering, DependsOnAmbientIndex) {
   MieSetting setting = droplets();
   setting.surroundings = 1.45;

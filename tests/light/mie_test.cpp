@@ -192,7 +192,7 @@ TEST(Mie, NothingIsScatteredWithoutAChangeOfIndex) {
   }
 }
 
-// As m tends to 1, every part of the sphere scatters independently (Rayleigh-Gans; Bohren & Huffman sec. 6.1): |S1| =
+// If m tends to 1, every part of the sphere scatters independently (Rayleigh-Gans; Bohren & Huffman sec. 6.1): |S1| =
 // 2/3 x^3 |m - 1| f(u), S2 = S1 cos theta, f = 3 (sin u - u cos u)/u^3, u = 2 x sin(theta/2). The relative error is of
 // the order of m - 1 and of 2 x (m - 1), the phase shift of light in the sphere, at the forward amplitude.
 TEST(Mie, FaintSpheresFollowRayleighAndGans) {

@@ -8,6 +8,7 @@
 #include "render/optics/paraxial.h"
 #include "tests/optics/lens_fixtures.h"
 #include "tests/optics/prescription_texts.h"
+#include "tests/support/expect_warning.h"
 
 // Zemax files written or edited by hand or by other programs. One test for every row of the table of irregular files in
 // docs/file-formats.md: each file is read with one warning that names its line.
@@ -32,7 +33,7 @@ double biconvex_focal_length(double n, double thickness) {
   return 1 / ((n - 1) * (2 * c - (n - 1) * thickness * c * c / n));
 }
 
-/// Returns the singlet with a glass line of its own.
+/// Returns the singlet with another line GLAS.
 std::string with_glass(std::string const& words) {
   return changed(zmx, "GLAS N-BK7 0 0 1.5 40 0 0 0 0 0 0", "GLAS " + words);
 }
@@ -48,13 +49,13 @@ TEST(IrregularZmx, SurfacesThatAreNotNumberedConsecutivelyAreInTheOrderOfTheFile
   double const f = effective_length_mm(read_lens("regular.zmx", zmx));
   Lens const gap = read_lens("gap.zmx", with_end("SURF 5\n" + plane_block));
   EXPECT_EQ(effective_length_mm(gap), f);
-  EXPECT_THAT(gap.warnings, ElementsAre(HasSubstr("gap.zmx:27")));
+  EXPECT_THAT(gap.warnings, ElementsAre(Warns("assumed at gap.zmx:27")));
   // a plane in air between the lens and the image changes nothing
   for (std::string const number : {"2AS", "2.5"}) {
     Lens const lens = read_lens("part.zmx", with_end("SURF " + number + "\n  DISZ 0\nSURF 3\n" + plane_block));
     EXPECT_EQ(effective_length_mm(lens), f);
     EXPECT_EQ(lens.surfaces.size(), 3u);
-    EXPECT_THAT(lens.warnings, ElementsAre(HasSubstr("part.zmx:27")));
+    EXPECT_THAT(lens.warnings, ElementsAre(Warns("assumed at part.zmx:27")));
   }
 }
 
@@ -67,7 +68,7 @@ TEST(IrregularZmx, SurfacesMayBeNumberedBackwards) {
                               "  DISZ 90\n");
   EXPECT_NEAR(effective_length_mm(lens), 1 / (0.5 * (0.02 + 5 * 0.0008 / 3)), 1e-10);
   EXPECT_EQ(lens.stop, 0);
-  EXPECT_THAT(lens.warnings, ElementsAre(HasSubstr("back.zmx:6"), HasSubstr("back.zmx:6")));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("assumed at back.zmx:6"), Warns("assumed at back.zmx:6")));
 }
 
 // Numbers that repeat, or rise and fall, define no order; a first surface beyond 1 shows that the start is missing.
@@ -110,11 +111,10 @@ TEST(IrregularZmx, TermsBeyondTheEighthAreIgnored) {
   std::string const nine = changed(eight, "  PARM 2 1e-4\n", "  PARM 2 1e-4\n  PARM 9 1e-22\n  PARM 10 0\n");
   Lens const lens = read_lens("nine.zmx", nine);
   EXPECT_EQ(lens.prescription.surfaces[0].asphere, read_lens("eight.zmx", eight).prescription.surfaces[0].asphere);
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("nine.zmx:19"), HasSubstr("EVENASPH has 8 terms"),
-                                               HasSubstr("parameter 9"), HasSubstr("1.8e-06 mm"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("ignored at nine.zmx:19", HasSubstr("1.8e-06 mm"))));
   Lens const odd = read_lens("odd.zmx", changed(nine, "EVENASPH", "ODDASPHE"));
   EXPECT_EQ(odd.prescription.surfaces[0].radial.a.size(), 2u);
-  EXPECT_THAT(odd.warnings, ElementsAre(AllOf(HasSubstr("odd.zmx:19"), HasSubstr("ODDASPHE has 8 terms"))));
+  EXPECT_THAT(odd.warnings, ElementsAre(Warns("ignored at odd.zmx:19")));
 }
 
 // Indices are relative to air: helium has 0.99976. The lens is in it, so that its focal length in air behind it follows
@@ -137,14 +137,14 @@ TEST(IrregularZmx, AGlassThatEndsAtContactIsTraced) {
                                       "  CURV -0.02 0 0 0 0 \"\"\n  DISZ 47", "  CURV 0.02 0 0 0 0 \"\"\n  DISZ 47");
   Lens const lens = read_lens("contact.zmx", changed(concave, "DISZ 6.0", "DISZ -2.5e-5"));
   EXPECT_NEAR(effective_length_mm(lens), 1 / (-0.02 + 2.5e-5 / 1.5 * 1e-4), 1e-10);
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("contact.zmx:"), HasSubstr("2.5e-05 mm"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("inconsistent at contact.zmx:22", HasSubstr("2.5e-05 mm"))));
   Ray<double> ray = parallel_ray(1);
   ASSERT_EQ(carry(lens, ray), RayStatus::alive);
   EXPECT_NEAR(ray.direction.y, 1.0 / 50, 2e-5);
   // without semi-diameters as edges
   std::string const drawn = changed(changed(concave, "DIAM 8.0 1", "DIAM 8.0 0"), "DIAM 8.0 1", "DIAM 8.0 0");
   EXPECT_THAT(read_lens("drawn.zmx", changed(drawn, "DISZ 6.0", "DISZ -2.5e-5")).warnings,
-              ElementsAre(AllOf(HasSubstr("drawn.zmx:15"), HasSubstr("2.5e-05 mm"))));
+              ElementsAre(Warns("inconsistent at drawn.zmx:15", HasSubstr("2.5e-05 mm"))));
   EXPECT_EQ(refusal("crossed.zmx", changed(concave, "DISZ 6.0", "DISZ -2e-3")), "invalid_value at crossed.zmx:15");
 }
 
@@ -152,13 +152,13 @@ TEST(IrregularZmx, AGlassThatEndsAtContactIsTraced) {
 TEST(IrregularZmx, AnUnreadableAbbeNumberIsNoDispersion) {
   Lens const lens = read_lens("abbe.zmx", with_glass("___BLANK 1 0 1.5254 ? 0 0"));
   EXPECT_NEAR(effective_length_mm(lens), biconvex_focal_length(1.5254, 6), 1e-10);
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("abbe.zmx:20"), HasSubstr("\"?\""), HasSubstr("1.5254"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("assumed at abbe.zmx:20", HasSubstr("1.5254"))));
   double const blue = 486.1e-9;
   EXPECT_EQ(effective_length_mm(build_lens(lens.prescription, GlassCatalogue::shipped(), blue)),
             effective_length_mm(lens));
   Lens const named = read_lens("named.zmx", with_glass("N-BK7 0 0 ? ?"));
   EXPECT_EQ(effective_length_mm(named), effective_length_mm(read_lens("regular.zmx", zmx)));
-  EXPECT_THAT(named.warnings, ElementsAre(HasSubstr("named.zmx:20")));
+  EXPECT_THAT(named.warnings, ElementsAre(Warns("ignored at named.zmx:20")));
   EXPECT_EQ(refusal("index.zmx", with_glass("___BLANK 1 0 ? 60")), "syntax at index.zmx:20");
 }
 
@@ -166,7 +166,7 @@ TEST(IrregularZmx, NumbersMayHaveADecimalComma) {
   std::string const text = changed(with_glass("___BLANK 1 0 1,5168 0"), "CURV -0.02", "CURV -2,0E-2");
   Lens const lens = read_lens("comma.zmx", text);
   EXPECT_NEAR(effective_length_mm(lens), biconvex_focal_length(1.5168, 6), 1e-10);
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("comma.zmx:20"), HasSubstr("1,5168"), HasSubstr("kind: 2"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("assumed at comma.zmx:20", HasSubstr("1,5168"))));
   EXPECT_EQ(read_lens("title.zmx", changed(zmx, "NAME a singlet", "NAME 1,5")).prescription.title, "1,5");
   for (std::string const number : {"0,02,0", "1,000.0", "0,x", "0,"}) {
     EXPECT_EQ(refusal("list.zmx", changed(zmx, "CURV 0.02", "CURV " + number)), "syntax at list.zmx:18");
@@ -178,7 +178,7 @@ TEST(IrregularZmx, AGlassMayFollowMakerAndFamily) {
   double const f = effective_length_mm(read_lens("regular.zmx", zmx));
   Lens const lens = read_lens("family.zmx", with_glass("SCHOTT-BK|N-BK7"));
   EXPECT_EQ(effective_length_mm(lens), f);
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("family.zmx:20"), HasSubstr("glass N-BK7 of SCHOTT"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("assumed at family.zmx:20", HasSubstr("N-BK7"))));
   EXPECT_EQ(effective_length_mm(read_lens("other.zmx", with_glass("CROWN|N-BK7"))), f);
   EXPECT_EQ(refusal("unknown.zmx", with_glass("SCHOTT-BK|N-BK999")), "unknown_choice at unknown.zmx:20");
 }

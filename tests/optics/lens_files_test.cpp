@@ -15,6 +15,7 @@
 #include "render/optics/paraxial.h"
 #include "tests/optics/lens_fixtures.h"
 #include "tests/optics/prescription_texts.h"
+#include "tests/support/expect_warning.h"
 
 // One test for every row of the first table of .zmx, .seq and .agf files in docs/file-formats.md. The files in
 // tests/cases/lenses each have one property of files written by other programs.
@@ -91,7 +92,7 @@ TEST(LensFiles, TheDoubletIsThatOfThePublishedFocalLength) { EXPECT_NEAR(doublet
 TEST(LensFiles, TheLastLineNeedsNoEnd) {
   Lens const lens = lens_of_case("no_final_newline.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("no_final_newline.zmx:33")));
+  EXPECT_THAT(lens.warnings, Contains(Warns("incomplete at no_final_newline.zmx:33")));
 }
 
 // An aperture from 7.5 mm to infinity around a pupil of 6 mm would block all light and is ignored; one from 2 mm on
@@ -99,7 +100,7 @@ TEST(LensFiles, TheLastLineNeedsNoEnd) {
 TEST(LensFiles, AnApertureMayHaveNoUpperLimit) {
   Lens const lens = lens_of_case("clap_inf.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("clap_inf.zmx:12")));
+  EXPECT_THAT(lens.warnings, Contains(Warns("ignored at clap_inf.zmx:12")));
   EXPECT_EQ(fate(lens, {0, 3}), RayStatus::alive);
   Lens const ring = lens_of_text("ring.zmx", changed(zmx, "  STOP\n", "  STOP\n  CLAP 2 INF 0\n"));
   EXPECT_EQ(fate(ring, {0, 1}), RayStatus::vignetted);
@@ -109,18 +110,19 @@ TEST(LensFiles, AnApertureMayHaveNoUpperLimit) {
 TEST(LensFiles, AnUnknownGlassHasNdAndVdInItsLine) {
   Lens const lens = lens_of_case("glass_by_nd_vd.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("zmx:17"), HasSubstr("MYCROWN"), HasSubstr("1.62041")),
-                                         AllOf(HasSubstr("zmx:23"), HasSubstr("MYFLINT"), HasSubstr("29.5"))));
+  EXPECT_THAT(lens.warnings,
+              ElementsAre(testing::Field(&Warning::text, AllOf(HasSubstr("MYCROWN"), HasSubstr("1.62041"))),
+                          testing::Field(&Warning::text, AllOf(HasSubstr("MYFLINT"), HasSubstr("29.5")))));
 }
 
 // The warning lists every glass specified by nd and Vd with its line: GLAS, S, SO or GLA.
 TEST(LensFiles, WarningsOfGlassesNameTheLineOfEachGlass) {
   EXPECT_THAT(lens_of_case("object_in_water.zmx").warnings,
-              Contains(HasSubstr("object_in_water.zmx:16: glass nd 1.33300, Vd 55.80")));
+              Contains(Warns("approximated at object_in_water.zmx:16", HasSubstr("nd 1.33300, Vd 55.80"))));
   std::string const water = changed(changed(seq, "SO 0.0 1e13", "SO 0.0 1e13 1.333:55.8"), "NBK7_SCHOTT", "517642");
   EXPECT_THAT(lens_of_text("water.seq", changed(water, "STO;", "STO;\n GLA 1.62:60.3;")).warnings,
-              Contains(AllOf(HasSubstr(
-                  "water.seq:7: 2 glasses (nd 1.33300, Vd 55.80 (line 7); nd 1.62000, Vd 60.30 (line 10))"))));
+              Contains(Warns("approximated at water.seq:7",
+                             HasSubstr("nd 1.33300, Vd 55.80 (line 7); nd 1.62000, Vd 60.30 (line 10)"))));
 }
 
 // 1.5 and 40 are Zemax's default values for unknown nd and Vd; they do not describe a glass.
@@ -184,7 +186,7 @@ TEST(LensFiles, AnObscurationMayFillItsSurface) {
   Lens const lens = lens_of_case("obscuration_fills_its_surface.zmx");
   EXPECT_EQ(fate(lens, {0, 1.9}), RayStatus::vignetted);
   EXPECT_EQ(fate(lens, {0, 2.1}), RayStatus::alive);
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("zmx:20")));
+  EXPECT_THAT(lens.warnings, Contains(Warns("assumed at obscuration_fills_its_surface.zmx:20")));
   EXPECT_NEAR(focal_length_mm(lens), traced_focal_length({0.02, -0.02}, {1, bk7(), 1}, {5}), 1e-7);
 }
 
@@ -194,12 +196,12 @@ TEST(LensFiles, DrawnEdgesMayOverlapOutsideTheLight) {
   Lens const lens = lens_of_case("drawn_edges_overlap.zmx");
   EXPECT_NEAR(focal_length_mm(lens), traced_focal_length({1 / 30.0, -1 / 30.0}, {1, 1.62041, 1}, {1.5}), 1e-10);
   EXPECT_NEAR(focal_length_mm(lens), 24.411219, 5e-7);
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("zmx:19")));
+  EXPECT_THAT(lens.warnings, Contains(Warns("inconsistent at drawn_edges_overlap.zmx:19")));
 }
 
 TEST(LensFiles, ASurfaceMayEndWithinItsSemiDiameter) {
   Lens const lens = lens_of_text("short.zmx", changed(zmx, "CURV 0.02", "CURV 0.2"));
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("short.zmx:15")));
+  EXPECT_THAT(lens.warnings, Contains(Warns("inconsistent at short.zmx:15")));
   EXPECT_EQ(fate(lens, {0, 5.5}), RayStatus::missed_lens);
 }
 
@@ -304,23 +306,23 @@ TEST(LensFiles, DecentredAperturesAreTracedAndSpidersPassedOver) {
   EXPECT_EQ(fate(lens, {4.9, 0}), RayStatus::alive);
   EXPECT_EQ(fate(lens, {-1.1, 0}), RayStatus::vignetted);
   EXPECT_EQ(fate(lens, {2, 2.9}), RayStatus::alive);
-  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("zmx:18"), HasSubstr("SPID"))));
+  EXPECT_THAT(lens.warnings, Contains(testing::Field(&Warning::text, HasSubstr("SPID"))));
 }
 
 TEST(LensFiles, WithoutAStopTheFirstSurfaceIsIt) {
   Lens const codev = lens_of_case("no_stop_named.seq");
   EXPECT_NEAR(focal_length_mm(codev), doublet_focal_length(), 1e-10);
   EXPECT_EQ(codev.stop, 0);
-  EXPECT_THAT(codev.warnings, Contains(HasSubstr("no_stop_named.seq:8")));
+  EXPECT_THAT(codev.warnings, Contains(Warns("assumed at no_stop_named.seq:8")));
   Lens const zemax = lens_of_text("no_stop.zmx", changed(zmx, "  STOP\n", ""));
   EXPECT_EQ(zemax.stop, 0);
-  EXPECT_THAT(zemax.warnings, Contains(HasSubstr("no_stop.zmx:15")));
+  EXPECT_THAT(zemax.warnings, Contains(Warns("assumed at no_stop.zmx:15")));
 }
 
 TEST(LensFiles, WithoutAnApertureTheStopsSemiDiameterIsIt) {
   Lens const lens = lens_of_text("open.zmx", changed(zmx, "ENPD 6.0\n", ""));
   EXPECT_NEAR(paraxial_lens(lens).entrance.diameter, 16e-3, 1e-15);
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("open.zmx:14")));
+  EXPECT_THAT(lens.warnings, Contains(Warns("assumed at open.zmx:14")));
 }
 
 TEST(LensFiles, CodeVMayBeWrittenInLowerCase) {
@@ -462,7 +464,7 @@ TEST(LensFiles, CodeVsShiftAlongTheAxisIsADistance) {
 // of 10 mm, and are therefore taken as radii. A program that reads radii computes 50.33 mm.
 TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
   Lens const lens = lens_of_case("without_rdm.seq");
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("without_rdm.seq:7")));
+  EXPECT_THAT(lens.warnings, Contains(Warns("assumed at without_rdm.seq:7")));
   auto const index = [](char const* name) {
     return GlassCatalogue::shipped().match(name, 587.6e-9, "").glass->index(587.6e-9);
   };
@@ -476,7 +478,7 @@ TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
       changed(changed(changed(seq, "RDM;LEN", "LEN"), "S 50.0", "S 0.02"), "S -50.0", "S -0.02");
   Lens const plain = lens_of_text("curvatures.seq", curvatures);
   EXPECT_NEAR(focal_length_mm(plain), focal_length_mm(lens_of_text("radii.seq", seq)), 1e-10);
-  EXPECT_THAT(plain.warnings, Not(Contains(HasSubstr("RDM"))));
+  EXPECT_THAT(plain.warnings, IsEmpty());
 }
 
 TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
@@ -486,11 +488,11 @@ TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
         << command;
   }
   Lens const lens = lens_of_text("noted.seq", changed(seq, "STO;", "STO; QQQ 1; WWW; QQQ 2;"));
-  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("noted.seq:9"), HasSubstr("QQQ, WWW"))));
+  EXPECT_THAT(lens.warnings, Contains(Warns("ignored at noted.seq:9", HasSubstr("QQQ, WWW"))));
   Lens const hole = lens_of_text("hole.seq", changed(seq, "CIR 8.0", "CIR 8.0; CIR HOL L'A' 2.0"));
   EXPECT_EQ(fate(hole, {0, 1.9}), RayStatus::vignetted);
   EXPECT_EQ(fate(hole, {0, 2.1}), RayStatus::alive);
-  EXPECT_THAT(hole.warnings, Contains(HasSubstr("HOL")));
+  EXPECT_THAT(hole.warnings, Contains(Warns("approximated at hole.seq:9")));
 }
 
 // CIR on the stop limits an aperture that EPD or FNO would open too far, as CLAP does in a .zmx file: the pupil is 3
@@ -538,7 +540,7 @@ TEST(LensFiles, CodeVsParaxialImageSolveIsObeyed) {
   EXPECT_NEAR(image_mm(solved), back, 1e-12);
   EXPECT_NEAR(image_mm(changed(solved, "SI 0.0 0.0", "SI 0.0 -0.5")), back - 0.5, 1e-12);
   EXPECT_THAT(lens_of_text("tilt.seq", changed(solved, "SI 0.0 0.0", "SI 0.0 0.0\n  ADE 5")).warnings,
-              Contains(AllOf(HasSubstr("tilt.seq:14"), HasSubstr("PIM"))));
+              Contains(Warns("ignored at tilt.seq:14")));
 }
 
 // Vignetting factors do not change the light: each command is listed if any factor differs from 0, several of them in
@@ -551,16 +553,16 @@ TEST(LensFiles, VignettingFactorsAreNotUsed) {
   for (std::string const key : {"VDXN", "VDYN", "VCXN", "VCYN", "VANN", "VDXD", "VDYD", "VCXD", "VCYD"}) {
     Lens const lens = of_zemax(key + " 0 0.2 0 0");
     EXPECT_EQ(focal_length_mm(lens), f) << key;
-    EXPECT_THAT(lens.warnings, ElementsAre(HasSubstr("factors.zmx:11: " + key)));
+    EXPECT_THAT(lens.warnings, ElementsAre(Warns("ignored at factors.zmx:11", HasSubstr(key))));
     EXPECT_THAT(of_zemax(key + " 0 0 0 0").warnings, IsEmpty()) << key;
   }
   EXPECT_THAT(of_zemax("VDXN 0 0.1\nVDYN 0 0.1\nVCXN 0 0.2\nVCYN 0 0.2\nVANN 0 0").warnings,
-              ElementsAre(HasSubstr("factors.zmx:11: VDXN")));
+              ElementsAre(Warns("ignored at factors.zmx:11")));
   for (std::string const key : {"VUX", "VLX", "VUY", "VLY"}) {
     auto const of_codev = [&](std::string const& factors) {
       return lens_of_text("factors.seq", changed(seq, "REF 2", "REF 2\n" + key + factors)).warnings;
     };
-    EXPECT_THAT(of_codev(" 0 0.2"), ElementsAre(HasSubstr("factors.seq:7: " + key)));
+    EXPECT_THAT(of_codev(" 0 0.2"), ElementsAre(Warns("ignored at factors.seq:7", HasSubstr(key))));
     EXPECT_THAT(of_codev(" 0 0"), IsEmpty()) << key;
   }
 }
@@ -571,14 +573,14 @@ TEST(LensFiles, CodeVsOtherFieldsAreNamed) {
     auto const warnings = [&](std::string const& fields) {
       return lens_of_text("fields.seq", changed(seq, "REF 2", "REF 2\n" + key + fields)).warnings;
     };
-    EXPECT_THAT(warnings(" 0 3"), ElementsAre(AllOf(HasSubstr("fields.seq:7: " + key), HasSubstr("YAN"))));
+    EXPECT_THAT(warnings(" 0 3"), ElementsAre(Warns("ignored at fields.seq:7", HasSubstr(key))));
     EXPECT_THAT(warnings(" 0 0"), IsEmpty()) << key;
   }
 }
 
 TEST(LensFiles, WithoutAnImageTheLastThicknessLeadsToIt) {
   Lens const lens = lens_of_text("open.seq", changed(seq, "SI 0.0 0.0\n", ""));
-  EXPECT_THAT(lens.warnings, ElementsAre(HasSubstr("open.seq:10")));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("incomplete at open.seq:10")));
   EXPECT_NEAR(analyse_field(lens, paraxial_lens(lens), 16).image_plane / unit::millimetre, 47, 1e-12);
 }
 
@@ -586,7 +588,7 @@ TEST(LensFiles, WithoutAnImageTheLastThicknessLeadsToIt) {
 TEST(LensFiles, CodeVsTemperatureAndPressureAreNoted) {
   EXPECT_THAT(lens_of_text("usual.seq", changed(seq, "REF 2", "REF 2\nTEM 20.0\nPRE 760.0")).warnings, IsEmpty());
   EXPECT_THAT(lens_of_text("hot.seq", changed(seq, "REF 2", "REF 2\nTEM 40\nPRE 500")).warnings,
-              ElementsAre(HasSubstr("hot.seq:7: TEM"), HasSubstr("hot.seq:8: PRE")));
+              ElementsAre(Warns("ignored at hot.seq:7"), Warns("ignored at hot.seq:8")));
 }
 
 TEST(LensFiles, PrivateGlassesNeedAnIndexForEveryWavelengthAndAnEnd) {
@@ -632,7 +634,7 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
   auto const warnings_with = [](std::string const& word) {
     return [word](Lens const& lens) {
       return static_cast<double>(std::count_if(lens.warnings.begin(), lens.warnings.end(), [&](auto const& warning) {
-        return warning.find(word) != std::string::npos;
+        return warning.text.find(word) != std::string::npos;
       }));
     };
   };
@@ -753,7 +755,8 @@ TEST(LensFiles, TheFilesCatalogueIsThatOfAGlassOfSeveral) {
   other.catalogues.clear();
   Lens const assumed = build_lens(other, glasses, spectral_line::d);
   EXPECT_NEAR(focal_length_mm(assumed), schott, 1e-10);
-  EXPECT_THAT(assumed.warnings, ElementsAre(AllOf(HasSubstr("zmx:18"), HasSubstr("OHARA:SF1"))));
+  EXPECT_THAT(assumed.warnings,
+              ElementsAre(Warns("assumed at glass_in_two_catalogues.zmx:18", HasSubstr("OHARA:SF1"))));
 }
 
 // A usable glass, one with an index below 1, and one without a range of wavelengths.
@@ -762,8 +765,9 @@ TEST(LensFiles, AnOddGlassLeavesItsCatalogueUsable) {
   glasses.add_file(case_path("good_and_odd_glass.agf"));
   ASSERT_EQ(glasses.glasses().size(), 1u);
   EXPECT_NEAR(glasses.match("GOODCROWN", spectral_line::d, "").glass->nd(), std::sqrt(2.5571), 1e-15);
-  EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("good_and_odd_glass.agf:5: 2 of 3 glasses"),
-                                                    HasSubstr("ODDGLASS (line 5"), HasSubstr("NORANGE (line 8"))));
+  EXPECT_THAT(glasses.warnings(),
+              ElementsAre(Warns("ignored at good_and_odd_glass.agf:5",
+                                AllOf(HasSubstr("ODDGLASS (line 5"), HasSubstr("NORANGE (line 8")))));
   EXPECT_EQ(error_of([&] { glasses.match("NORANGE", spectral_line::d, "lens:1"); }), "invalid_value at lens:1");
 }
 
@@ -802,9 +806,9 @@ TEST(LensFiles, GlassesThatCannotBeUsedAreLeftOutTogether) {
       "NM NEWER 14 0 1.5 60\nCD 2.25\nLD 0.3 2\nNM DENSE 1 0 1.5 60\nCD 90\nLD 0.3 2\n",
       "OWN", "own.agf");
   EXPECT_EQ(glasses.glasses().size(), 1u);
-  EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("own.agf:4: 4 of 5 glasses"), HasSubstr("EMPTY (line 4"),
-                                                    HasSubstr("NORANGE (line 6"), HasSubstr("NEWER (line 8"),
-                                                    HasSubstr("DENSE (line 11"))));
+  EXPECT_THAT(glasses.warnings(), ElementsAre(Warns("ignored at own.agf:4",
+                                                    AllOf(HasSubstr("EMPTY (line 4"), HasSubstr("NORANGE (line 6"),
+                                                          HasSubstr("NEWER (line 8"), HasSubstr("DENSE (line 11")))));
 }
 
 // The catalogue prints nd = 1.6 for n^2 = 2.25, which causes a warning where the glass is used. Printed values of 1 and
@@ -814,17 +818,18 @@ TEST(LensFiles, ACatalogueThatContradictsItselfIsWarnedOf) {
   glasses.add("NM X 1 0 1.6 50\nCD 2.25\nLD 0.3 2\nIT 0.4 0.9 0\nIT 0.5 0.99 10\nNM Y 1 0 1 0\nCD 2.25\nLD 0.3 2\n",
               "OWN", "own.agf");
   GlassMatch const x = glasses.match("X", spectral_line::d, "lens:1");
-  EXPECT_THAT(x.notes, ElementsAre(AllOf(HasSubstr("lens:1"), HasSubstr("1.500000"), HasSubstr("1.600000"))));
+  EXPECT_THAT(x.notes,
+              ElementsAre(Warns("inconsistent at lens:1", AllOf(HasSubstr("1.500000"), HasSubstr("1.600000")))));
   EXPECT_EQ(x.glass->transmission.size(), 1u);
   EXPECT_THAT(glasses.match("Y", spectral_line::d, "lens:1").notes, IsEmpty());
-  EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("own.agf:4"), HasSubstr("IT"))));
+  EXPECT_THAT(glasses.warnings(), ElementsAre(Warns("ignored at own.agf:4")));
 }
 
 // SCHOTT's lead-free glass has the same index as the one that it replaced: 1.5168.
 TEST(LensFiles, AnOlderGlassIsItsSuccessor) {
   Lens const lens = lens_of_text("bk7.zmx", changed(zmx, "GLAS N-BK7", "GLAS BK7"));
   EXPECT_EQ(focal_length_mm(lens), focal_length_mm(lens_of_text("nbk7.zmx", zmx)));
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("bk7.zmx:20"), HasSubstr("N-BK7"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(Warns("assumed at bk7.zmx:20", HasSubstr("N-BK7"))));
 }
 
 // A file with the surfaces of the singlet only, without object and image. An index of -1 is a mirror: R = 50 mm, f = R
@@ -834,20 +839,20 @@ TEST(LensFiles, OtherProgramsLeaveOutTheObjectOrWriteMirrorsAsIndices) {
                                  "MODE SEQ\nUNIT MM\nSURF 1\n  CURV 0.02\n  DISZ 6\n  DIAM 8\n  GLAS ___BLANK 1 0 1.5\n"
                                  "SURF 2\n  CURV -0.02\n  DISZ 47\n  DIAM 8\n");
   EXPECT_NEAR(focal_length_mm(bare), traced_focal_length({0.02, -0.02}, {1, 1.5, 1}, {6}), 1e-10);
-  EXPECT_THAT(bare.warnings, Contains(HasSubstr("bare.zmx:3")));
+  EXPECT_THAT(bare.warnings, Contains(Warns("assumed at bare.zmx:3")));
   std::string const reflecting =
       changed(changed(zmx, "DISZ 6.0", "DISZ -6.0"), "GLAS N-BK7 0 0 1.5 40", "GLAS ___BLANK 1 0 -1 0");
   Lens const mirror = lens_of_text("mirror.zmx", changed(reflecting, "CURV -0.02", "CURV 0"));
   EXPECT_NEAR(std::abs(focal_length_mm(mirror)), 25, 1e-12);
-  EXPECT_THAT(mirror.warnings, Contains(HasSubstr("mirror.zmx:20")));
+  EXPECT_THAT(mirror.warnings, Contains(Warns("assumed at mirror.zmx:20")));
 }
 
 TEST(LensFiles, ConfigurationsEnvironmentAndCurvedImagesAreNotedOnce) {
   std::string const text =
       changed(changed(zmx, "PWAV 2", "PWAV 2\nMNUM 3 1\nENVD 40 1 1"), "SURF 3\n", "SURF 3\n  CURV 0.01\n");
   EXPECT_THAT(lens_of_text("noted.zmx", text).warnings,
-              UnorderedElementsAre(HasSubstr("noted.zmx:11: MNUM"), HasSubstr("noted.zmx:12: ENVD"),
-                                   HasSubstr("noted.zmx:29")));
+              testing::UnorderedElementsAre(Warns("ignored at noted.zmx:11"), Warns("ignored at noted.zmx:12"),
+                                            Warns("ignored at noted.zmx:29")));
 }
 
 }  // namespace

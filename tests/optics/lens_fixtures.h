@@ -11,7 +11,7 @@ namespace gladstone {
 
 /// Surface of a lens under test, with lengths in mm.
 struct SurfaceMm {
-  double radius;  ///< infinite: a plane
+  double radius;  ///< radius of curvature [mm]; infinite: a plane
   double thickness;
   double index_after;
   bool stop = false;

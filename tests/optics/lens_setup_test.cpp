@@ -65,7 +65,7 @@ TEST(LensSetup, ALensInWaterIsRefused) {
         SetupDocument::from_text("[lens]\nmodel = \"prescription\"\nfile = \"" + file + "\"\n", "water.toml");
     SetupTable const table = document.root().table("lens");
     LensSetup setup = read_lens_setup(table);
-    std::vector<std::string> warnings;
+    Warnings warnings;
     build_prescription(setup, table, GlassCatalogue::shipped(), spectral_line::d, std::nullopt, warnings);
     document.finish();
   };

@@ -163,7 +163,7 @@ TEST(Lens, TracedPathIsStationary) {
   }
 }
 
-// As its thickness and aperture shrink, a real lens images like a thin one: the error of the image height of a parallel
+// If its thickness and aperture shrink, a real lens images like a thin one: the error of the image height of a parallel
 // ray decreases as the square of its height.
 TEST(Lens, TendsToTheThinLensAsItShrinks) {
   double last = 0;

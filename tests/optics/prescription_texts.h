@@ -12,7 +12,7 @@
 
 namespace gladstone {
 
-/// Writes bytes to a file of the tests. @return its path
+/// Writes bytes to a temporary file of the tests. @return path of the file
 inline std::string file_of(std::string const& name, std::string const& bytes) {
   char const* const given = std::getenv("TEST_TMPDIR");
   std::string const path = std::string(given ? given : testing::TempDir()) + "/prescriptions/" + name;
@@ -21,13 +21,14 @@ inline std::string file_of(std::string const& name, std::string const& bytes) {
   return path;
 }
 
-/// Returns "CODE at PLACE" of the error in a file; empty if it is accepted.
+/// Returns "CODE at PLACE" of the error in a file; empty if the file is accepted.
 inline std::string refusal(std::string const& name, std::string const& bytes) {
   return error_of(
       [&] { build_lens(read_prescription(file_of(name, bytes)), GlassCatalogue::shipped(), spectral_line::d); });
 }
 
-/// The biconvex singlet R = 50 mm, t = 6 mm, N-BK7, in our format and in those of Zemax and CODE V.
+/// Prescription of a biconvex singlet, R = 50 mm, t = 6 mm, N-BK7, in our format and in the formats of Zemax and CODE
+/// V.
 inline constexpr char const* toml = R"(schema = 1
 title = "singlet"
 f_number = 8.0

@@ -11,8 +11,8 @@
 namespace gladstone {
 namespace {
 
-Rendering rendered_with_images(Scene& scene) {
-  return RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+Rendering rendered_with_images(PlannedScene& scene) {
+  return RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::yes);
 }
 
 double all_light(Image<double> const& image) { return std::accumulate(image.begin(), image.end(), 0.0); }
@@ -27,9 +27,9 @@ TEST(TelecentricRendering, DisplacesDotsByTheLensMagnification) {
                       "/lenses/telecentric.toml\"\nf_number = 11.0\n[geometry]\nz_front_mm = 960.0\nz_d_mm = 200.0\n"
                       "[medium.field]\nkind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]\n")
           .setup;
-  Scene scene = build_scene(setup);
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene.rays_per_dot = 256;
+  PlannedScene scene(build_scene(setup));
+  plan_step(scene);
+  scene.plan.rays = 256;
   Rendering const result = rendered_with_images(scene);
   double const M = scene.imaging.magnification;
   EXPECT_NEAR(M, 0.2, 0.004);
@@ -67,11 +67,11 @@ TEST(PlenopticRendering, SortsAllTheLightOfThePicture) {
   setup.camera.tilt = {1e-9, 0};  // a tilt, so that both cameras use the general model
   setup.target.dots_per_32px_window = 1;
   auto const picture = [](gladstone::Setup const& of) {
-    Scene scene = build_scene(of);
+    PlannedScene scene(build_scene(of));
     scene.dots.centre = {{0, 0}, {1e-3, -0.8e-3}, {-1.2e-3, 1.5e-3}};
     scene.dots.half_size = 0.1e-3;
-    scene = with_step(scene, determine_step_by_tracing(scene));
-    scene.rays_per_dot = 2048;
+    plan_step(scene);
+    scene.plan.rays = 2048;
     return rendered_with_images(scene);
   };
   Rendering const plain = picture(setup);

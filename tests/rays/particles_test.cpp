@@ -6,11 +6,11 @@
 
 #include "render/base/parallel.h"
 #include "render/base/units.h"
-#include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/particle_scene.h"
 #include "render/scene/two_media.h"
 #include "tests/scene/piv_setups.h"
+#include "tests/scene/planned_scene.h"
 
 namespace gladstone {
 namespace {
@@ -21,9 +21,9 @@ constexpr double mm = 1e-3;
 Setup deep_sheet() { return piv_setup(30 * mm, 1 * mm); }
 
 /// Returns a scene with particles at these positions, for each pulse.
-Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, std::vector<Vec3d> const& second,
-                           std::uint64_t rays) {
-  Scene scene = build_scene(setup);
+PlannedScene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, std::vector<Vec3d> const& second,
+                                  std::uint64_t rays) {
+  PlannedScene scene(build_scene(setup));
   LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
   scene.particles.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -34,20 +34,20 @@ Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, 
       scene.particles.photons[pulse][i] = sheet.photons(scene.particles.place[pulse][i], pulse);
     }
   }
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene.rays_per_dot = rays;
+  plan_step(scene);
+  scene.plan.rays = rays;
   return scene;
 }
 
-Rendering render(Scene const& scene, ParticleLight light = ParticleLight::scattered,
+Rendering render(PlannedScene const& scene, ParticleLight light = ParticleLight::scattered,
                  RenderImages images = RenderImages::no) {
-  return RaysRenderer().render_particles(scene, scene.particles, light, images);
+  return RaysRenderer().render_particles(scene, scene.plan, scene.particles, light, images);
 }
 
 double sum_of(Image<double> const& image) { return std::accumulate(image.begin(), image.end(), 0.0); }
 
 /// Image distance over the distance of the particle, per pixel pitch [px/m].
-double scale_at(Scene const& scene, double z) {
+double scale_at(PlannedScene const& scene, double z) {
   return scene.imaging.image_distance / (scene.setup.z_a - z) / scene.setup.camera.pixel_pitch;
 }
 
@@ -55,7 +55,7 @@ double scale_at(Scene const& scene, double z) {
 // the cone of +-0.5 degrees, the cross-section varies by odd powers, which cancel for 32 pairs of opposite rays, and by
 // a square below 1e-4.
 TEST(Particles, SendTheirPhotonsIntoTheLens) {
-  Scene scene = scene_with_particles(deep_sheet(), {{0, 0, 0}}, {{0, 0, 0}}, 64);
+  PlannedScene scene = scene_with_particles(deep_sheet(), {{0, 0, 0}}, {{0, 0, 0}}, 64);
   LaserSetup const& laser = scene.setup.piv->laser;
   double const fluence = laser.pulse_energy / (laser.height * laser.thickness);
   double const photon = constant::planck * constant::speed_of_light / laser.wavelength;
@@ -80,7 +80,7 @@ TEST(Particles, SendThePhotonsOfMieScattering) {
   setup.piv->laser.thickness = 1 * mm;
   for (double const field : {0.0, 90.0}) {
     setup.piv->laser.polarization = field * unit::degree;
-    Scene scene = scene_with_particles(setup, {{}}, {{}}, 64);
+    PlannedScene scene = scene_with_particles(setup, {{}}, {{}}, 64);
     double const photons = render(scene).truth.flux[0].x;
     double const expected = field == 0 ? 45443 : 45443 * 8.263150 / 4.933372;
     EXPECT_NEAR(photons, expected, 0.01 * expected) << field;
@@ -91,7 +91,7 @@ TEST(Particles, SendThePhotonsOfMieScattering) {
 // area over the squared distance. Over the lens, the cosine varies by a relative 1e-3, as an odd function.
 TEST(Particles, FallOffAsCosCubed) {
   Vec3d const off{100 * mm, 50 * mm, 0};
-  Scene scene = scene_with_particles(deep_sheet(), {{}, off}, {{}, off}, 64);
+  PlannedScene scene = scene_with_particles(deep_sheet(), {{}, off}, {{}, off}, 64);
   for (auto& photons : scene.particles.photons) photons = {1, 1};
   GroundTruth const truth = render(scene, ParticleLight::equal).truth;
   double const cosine = 0.75 / std::hypot(0.75, std::hypot(0.1, 0.05));
@@ -104,7 +104,7 @@ TEST(Particles, FallOffAsCosCubed) {
 TEST(Particles, LightThePictureByTheirFlux) {
   std::vector<Vec3d> const places{{1 * mm, 2 * mm, 0}, {-2 * mm, 1 * mm, 3 * mm}, {2.5 * mm, -1 * mm, -2 * mm}};
   for (std::uint64_t const rays : {64u, 300u}) {  // both methods: PSF by PSF, and by a grid
-    Scene scene = scene_with_particles(deep_sheet(), places, places, rays);
+    PlannedScene scene = scene_with_particles(deep_sheet(), places, places, rays);
     for (ParticleLight const light : {ParticleLight::scattered, ParticleLight::equal}) {
       Rendering const rendering = render(scene, light, RenderImages::yes);
       double flux = 0, most = 0;
@@ -128,7 +128,7 @@ TEST(Particles, AreProjectedByAPinhole) {
   setup.lens.f_number = std::numeric_limits<double>::infinity();
   std::vector<Vec3d> const first{{1 * mm, 2 * mm, 0}, {-2 * mm, 1 * mm, 7 * mm}, {3 * mm, -1 * mm, -9 * mm}};
   std::vector<Vec3d> const second{{1.5 * mm, 2 * mm, 1 * mm}, {-2 * mm, 1.2 * mm, 7 * mm}, {3 * mm, -1 * mm, -3 * mm}};
-  Scene scene = scene_with_particles(setup, first, second, 1);
+  PlannedScene scene = scene_with_particles(setup, first, second, 1);
   GroundTruth const truth = render(scene).truth;
   auto const pinhole = [&](Vec3d p) {
     return Vec2d{63.5 + scale_at(scene, p.z) * p.x, 63.5 - scale_at(scene, p.z) * p.y};
@@ -144,7 +144,7 @@ TEST(Particles, AreProjectedByAPinhole) {
 TEST(Particles, OutsideSheetAreInvisible) {
   gladstone::Setup setup = deep_sheet();
   setup.piv->laser.thickness = 2 * mm;
-  Scene scene =
+  PlannedScene scene =
       scene_with_particles(setup, {{0, 0, 0}, {1 * mm, 0, 3 * mm}}, {{0, 0, 2 * mm}, {1 * mm, 0, 3 * mm}}, 64);
   GroundTruth const truth = render(scene).truth;
   EXPECT_GT(truth.flux[0].x, 0);
@@ -168,7 +168,7 @@ TEST(Particles, InAnIndexGradientAreDisplaced) {
   setup.medium.field = UniformGradient<double>{{}, {g / setup.medium.gladstone_dale, 0, 0}};
   std::vector<Vec3d> const first{{0, 0, -10 * mm}, {0, 0, 5 * mm}, {0, 0, 0}};
   std::vector<Vec3d> const second{{0, 0, -8 * mm}, {1 * mm, 0, 5 * mm}, {0, 0, 1 * mm}};
-  Scene scene = scene_with_particles(setup, first, second, 512);
+  PlannedScene scene = scene_with_particles(setup, first, second, 512);
   GroundTruth const truth = render(scene).truth;
   auto const xi_px = [&](Vec3d p) {
     double const way = 20 * mm - p.z;
@@ -194,10 +194,10 @@ TEST(Particles, ApparentMotionIfMediumChanges) {
   setup.medium.field = UniformGradient<double>{{}, {g[0] / setup.medium.gladstone_dale, 0, 0}};
   setup.medium.second_field = UniformGradient<double>{{}, {g[1] / setup.medium.gladstone_dale, 0, 0}};
   std::vector<Vec3d> const places{{0, 0, -10 * mm}, {0, 0, 5 * mm}, {0, 0, 0}};
-  Scene scene = scene_with_particles(setup, places, places, 512);
+  PlannedScene scene = scene_with_particles(setup, places, places, 512);
   RaysRenderer renderer;
   Rendering const seen =
-      render_in_two_media(renderer, scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+      render_in_two_media(renderer, scene, scene.plan, scene.particles, ParticleLight::scattered, RenderImages::yes);
   for (std::size_t i = 0; i < places.size(); ++i) {
     double const way = 20 * mm - places[i].z, px = scale_at(scene, places[i].z) / setup.ambient_index();
     double const xi = g[0] * way * way / 2 * px, moved = (g[0] - g[1]) * way * way / 2 * px;
@@ -208,9 +208,10 @@ TEST(Particles, ApparentMotionIfMediumChanges) {
     EXPECT_LT(seen.truth.displacement_error_px[i].x, 1e-3);
   }
   Rendering const unlit =
-      render_in_two_media(renderer, scene, scene.particles, ParticleLight::scattered, RenderImages::no);
+      render_in_two_media(renderer, scene, scene.plan, scene.particles, ParticleLight::scattered, RenderImages::no);
   EXPECT_TRUE(std::isnan(unlit.truth.displacement_error_px[0].x)) << "not estimated without images";
-  Scene second = select_second_pulse(scene);
+  PlannedScene second(select_second_pulse(scene));
+  second.plan = scene.plan;
   Rendering const alone = render(second, ParticleLight::scattered, RenderImages::yes);
   EXPECT_TRUE(std::equal(seen.light.flow.begin(), seen.light.flow.end(), alone.light.flow.begin()));
   EXPECT_EQ(seen.truth.flux[0].y, alone.truth.flux[0].y);
@@ -224,7 +225,7 @@ TEST(Particles, OutOfFocusLeaveADisc) {
   double const z = 10 * mm;
   gladstone::Setup setup = deep_sheet();
   setup.lens.f_number = 4;
-  Scene scene = scene_with_particles(setup, {{0, 0, z}, {}}, {{0, 0, z}, {}}, 4096);
+  PlannedScene scene = scene_with_particles(setup, {{0, 0, z}, {}}, {{0, 0, z}, {}}, 4096);
   GroundTruth const truth = render(scene, ParticleLight::equal).truth;
   double const diameter = scene.imaging.image_distance / 0.75 * (105 * mm / 4) * z / (0.75 - z) / 10e-6;
   EXPECT_NEAR(truth.displacement_std_px[0].x, diameter / 4, 2e-3 * diameter / 4);
@@ -252,7 +253,7 @@ TEST(Particles, AreAsWideAsDiffractionAndBlurTogether) {
   gladstone::Setup setup = deep_sheet();
   setup.camera.pixel_pitch = 2e-6;  // sigma is one pixel, so that the position within the pixel has no effect
   for (double const z : {0.0, 2 * mm, 6 * mm, -6 * mm}) {
-    Scene scene = scene_with_particles(setup, {{0, 0, z}}, {{0, 0, z}}, 4096);
+    PlannedScene scene = scene_with_particles(setup, {{0, 0, z}}, {{0, 0, z}}, 4096);
     Rendering const rendering = render(scene, ParticleLight::scattered, RenderImages::yes);
     double const px = 2e-6, pupil = 105 * mm / 8, image_distance = scene.imaging.image_distance;
     double const diffraction = 4 * 0.4206042622 * image_distance / pupil * 532e-9 / px;
@@ -270,7 +271,7 @@ TEST(Particles, BlurAsMuchAsDiffractionAtTheEndsOfTheDepthOfField) {
   setup.lens.f_number = 4;
   double const M = setup.imaging().magnification;
   double const z = 0.5 * 4.88 * std::pow((M + 1) / M, 2) * 16 * 532e-9;
-  Scene scene = scene_with_particles(setup, {{0, 0, z}, {0, 0, -z}}, {{0, 0, z}, {0, 0, -z}}, 4096);
+  PlannedScene scene = scene_with_particles(setup, {{0, 0, z}, {0, 0, -z}}, {{0, 0, z}, {0, 0, -z}}, 4096);
   GroundTruth const truth = render(scene, ParticleLight::equal).truth;
   double const spot = 2.43934 * 4 * (1 + M) * 532e-9 / 10e-6;
   for (Vec2d const deviation : truth.displacement_std_px) EXPECT_NEAR(4 * deviation.x, spot, 4e-3 * spot);
@@ -284,9 +285,9 @@ TEST(Particles, GiveTheSameBitsOnAnyNumberOfThreads) {
   setup.medium.thickness = 40 * mm;
   auto const render_on = [&](int threads) {
     set_thread_count(threads);
-    Scene scene = build_scene(setup);
-    scene = with_step(scene, determine_step_by_tracing(scene));
-    scene.rays_per_dot = 32;
+    PlannedScene scene(build_scene(setup));
+    plan_step(scene);
+    scene.plan.rays = 32;
     return render(scene, ParticleLight::scattered, RenderImages::yes);
   };
   int const before = thread_count();

@@ -20,8 +20,9 @@
 namespace gladstone {
 namespace {
 
-Rendering by_rays(Scene scene, RenderImages images = RenderImages::yes, RenderTheory theory = RenderTheory::yes) {
-  return RaysRenderer().render(scene, scene.dots, images, theory);
+Rendering by_rays(PlannedScene scene, RenderImages images = RenderImages::yes,
+                  RenderTheory theory = RenderTheory::yes) {
+  return RaysRenderer().render(scene, scene.plan, scene.dots, images, theory);
 }
 
 double brightest(Image<double> const& image) { return *std::max_element(image.begin(), image.end()); }
@@ -40,7 +41,7 @@ double levels_between(Image<double> const& a, Image<double> const& b) {
 }
 
 /// Table 1 with the late DNS plane: dots of 3 px.
-Scene late_scene(std::uint64_t rays) {
+PlannedScene late_scene(std::uint64_t rays) {
   Setup setup = table1_setup(48);
   setup.medium.field = dns_plane("late");
   return scene_with_dots(setup, lattice(48, 2, 17.3), rays);
@@ -51,8 +52,8 @@ Scene late_scene(std::uint64_t rays) {
 // bits, the scatter of these rays; in the measurement image, a third of a level is added, the error of a deflection
 // table at any number of rays.
 TEST(RaysRenderer, GivesTheTruthAndTheImagesOfFocusedDots) {
-  Scene scene = late_scene(65536);
-  ASSERT_TRUE(focused_dots(scene));
+  PlannedScene scene = late_scene(65536);
+  ASSERT_TRUE(focused_dots(scene, scene.plan));
   Rendering const fast = render_all(scene), rays = by_rays(scene);
   for (std::size_t dot = 0; dot < fast.truth.size(); ++dot) {
     Vec2d const off = rays.truth.displacement_px[dot] - fast.truth.displacement_px[dot];
@@ -74,7 +75,7 @@ TEST(RaysRenderer, GivesTheTruthAndTheImagesOfFocusedDots) {
 TEST(RaysRenderer, UndeflectedDotsDoNotMove) {
   auto setup = table1_setup(32);
   setup.medium.field = uniform_gradient(0, 0);
-  Scene const scene = scene_with_dots(setup, {{15.3, 16.9}}, 64);
+  PlannedScene const scene = scene_with_dots(setup, {{15.3, 16.9}}, 64);
   Rendering const still = by_rays(scene);
   EXPECT_EQ(still.truth.displacement_px[0].x, 0);
   EXPECT_EQ(still.truth.displacement_px[0].y, 0);
@@ -85,7 +86,7 @@ TEST(RaysRenderer, UndeflectedDotsDoNotMove) {
 TEST(RaysRenderer, ShowsTheDisplacementOfEqNine) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(50, 30);
-  Scene const scene = scene_with_dots(setup, {{31.5, 31.5}, {5, 60}}, 512);
+  PlannedScene const scene = scene_with_dots(setup, {{31.5, 31.5}, {5, 60}}, 512);
   Rendering const rendering = by_rays(scene, RenderImages::no);
   double const per_gradient = 105.0 / 895.0 * 0.25 * setup.medium.gladstone_dale * 0.01 / setup.ambient_index() / 1e-5;
   for (std::size_t dot = 0; dot < 2; ++dot) {
@@ -97,7 +98,7 @@ TEST(RaysRenderer, ShowsTheDisplacementOfEqNine) {
 }
 
 TEST(RaysRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
-  Scene const scene = late_scene(256);
+  PlannedScene const scene = late_scene(256);
   int const threads = thread_count();
   set_thread_count(1);
   Rendering const one = by_rays(scene);
@@ -118,8 +119,8 @@ TEST(RaysRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
 TEST(RaysRenderer, MarginOfChiefAndEdgeRaysHoldsAllRaysThroughASmoothField) {
   auto setup = table1_setup(48);
   setup.medium.field = sinusoid(0.2, 3e-3);
-  Scene const scene = scene_with_dots(setup, lattice(48, 8, 4.1), 256);  // phases 0.55 rad apart
-  RaysLaunch const launch(scene, SpotView{});
+  PlannedScene const scene = scene_with_dots(setup, lattice(48, 8, 4.1), 256);  // phases 0.55 rad apart
+  RaysLaunch const launch(scene, scene.plan, SpotView{});
   LambertSources<double> const lambert{scene.dots.view(-scene.setup.z_d)};
   double closest = 0;
   std::visit(
@@ -147,10 +148,10 @@ struct TracedDots {
   StatusCounts statuses;
 };
 
-TracedDots trace_dots(Scene const& scene, RayOrder order) {
+TracedDots trace_dots(PlannedScene const& scene, RayOrder order) {
   std::optional<AiryTable> airy;
-  RaysLaunch const launch(scene, make_spot(scene, airy), StopRim::smooth, order);
-  RaysLadder const ladder = RaysLadder::of_points(scene, launch, RenderImages::yes);
+  RaysLaunch const launch(scene, scene.plan, make_spot(scene, airy), StopRim::smooth, order);
+  RaysLadder const ladder = RaysLadder::of_points(scene, scene.plan, launch, RenderImages::yes);
   LambertSources<double> const lambert{scene.dots.view(-scene.setup.z_d)};
   int const columns = scene.setup.camera.columns, rows = scene.setup.camera.rows;
   LightImage reference(columns, rows), flow(columns, rows);
@@ -174,7 +175,7 @@ TracedDots trace_dots(Scene const& scene, RayOrder order) {
 // 1000 by nodes.
 TEST(RaysRenderer, OrderOfRaysDoesNotMatter) {
   for (std::uint64_t const rays : {64u, 1000u}) {
-    Scene const scene = late_scene(rays);
+    PlannedScene const scene = late_scene(rays);
     TracedDots const one = trace_dots(scene, RayOrder::neighbours), other = trace_dots(scene, RayOrder::sequence);
     EXPECT_EQ(one.statuses, other.statuses);
     for (std::size_t dot = 0; dot < one.truth.size(); ++dot) {
@@ -200,11 +201,11 @@ TEST(RaysRenderer, OrderOfRaysDoesNotMatter) {
 
 // The truth of a dot depends on its own data only: neither on the number of dots nor on its position in the list.
 TEST(RaysRenderer, TruthOfADotIsIndependentOfOthers) {
-  Scene all = late_scene(256), turned = all;
+  PlannedScene all = late_scene(256), turned = all;
   std::reverse(turned.dots.centre.begin(), turned.dots.centre.end());
   GroundTruth const truth = by_rays(all).truth, of_turned = by_rays(turned).truth;
   for (std::size_t dot = 0; dot < truth.size(); ++dot) {
-    Scene alone = all;
+    PlannedScene alone = all;
     alone.dots.centre = {all.dots.centre[dot]};
     EXPECT_EQ(by_rays(alone).truth.displacement_px[0], truth.displacement_px[dot]) << dot;
     EXPECT_EQ(of_turned.displacement_px[truth.size() - 1 - dot], truth.displacement_px[dot]) << dot;
@@ -214,7 +215,7 @@ TEST(RaysRenderer, TruthOfADotIsIndependentOfOthers) {
 // White paper imaged by a thin lens: cos^4 of the angle to the axis.
 TEST(RaysRenderer, SeesWhitePaperByTheFourthPowerOfTheCosine) {
   auto const setup = table1_setup(512);
-  Scene const scene = scene_with_dots(setup, {{200, 200}}, 64);
+  PlannedScene const scene = scene_with_dots(setup, {{200, 200}}, 64);
   Image<double> const white = render_white_target(scene), expected = render_white_light(scene);
   // 4096 rays and a smoothed edge of the stop; over the light cone at f/11, the mean of cos^4 is 2e-5 less than on the
   // axis
@@ -228,14 +229,12 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   setup.medium.field = sinusoid(0.05, 4e-3);
   setup.camera.bit_depth = 8;
   setup.target.dot_diameter_px = 0;
-  Scene scene = scene_with_dots(setup, lattice(64, 3, 15), 64);
+  PlannedScene scene = scene_with_dots(setup, lattice(64, 3, 15), 64);
   scene.setup.render.rays_per_dot.reset();
-  IntegrationStep const step = determine_step_by_tracing(scene);
-  EXPECT_LT(step.change_px, 1e-4);
-  scene = with_step(std::move(scene), step);
-  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+  EXPECT_LT(plan_step(scene).change_px, 1e-4);
+  scene.plan = plan_rays_by_tracing(scene, scene.plan);
   // The goals are reached: half a level in the images, and another seed has the same truth within 1e-3 px.
-  EXPECT_LE(measure_image_error(scene, scene.adaptive_criteria.value().level), image_tolerance_levels);
+  EXPECT_LE(measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria.value().level), image_tolerance_levels);
   Rendering const one = by_rays(scene, RenderImages::no);
   EXPECT_LE(truth_accuracy(one.truth, truth_tolerance_px).rms_px, truth_tolerance_px);
   scene.setup.render.seed = 99;

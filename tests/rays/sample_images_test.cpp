@@ -12,13 +12,13 @@ namespace gladstone {
 namespace {
 
 /// Returns the set-up of Table 1 with a sinusoidal density; its dots extend 32 px beyond the view.
-Scene wave_scene(Focus focus) {
+PlannedScene wave_scene(Focus focus) {
   auto setup = table1_setup(64);
   setup.lens.focus = focus;
   setup.medium.field = sinusoid(0.1, 5e-3);
   setup.view_margin_px = 32;
   setup.render.method = RenderMethod::rays;
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   plan_step(scene);
   return scene;
 }
@@ -30,13 +30,13 @@ double level_of(FramePair<double> const& light) {
          (0.9 * 4095);
 }
 
-FramePair<double> render_light(Scene const& scene) {
-  return RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light;
+FramePair<double> render_light(PlannedScene const& scene) {
+  return RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no).light;
 }
 
 /// Returns the scatter of an image in the worse frame, from two images with different seeds: rms over lit pixels
 /// [levels].
-double scatter_of_images(Scene scene, double level) {
+double scatter_of_images(PlannedScene scene, double level) {
   FramePair<double> const one = render_light(scene);
   scene.setup.render.seed = repeat_seed(scene.setup.render.seed, 5);
   FramePair<double> const other = render_light(scene);
@@ -61,10 +61,10 @@ double scatter_of_images(Scene scene, double level) {
 // random ones; out of focus the 12 discs that are as large as the view give 15 %.
 TEST(ImageError, IsTheScatterOfImagesOfAllDots) {
   for (Focus const focus : {Focus::target, Focus::medium}) {
-    Scene scene = wave_scene(focus);
-    scene.rays_per_dot = focus == Focus::target ? 256 : 2048;
+    PlannedScene scene = wave_scene(focus);
+    scene.plan.rays = focus == Focus::target ? 256 : 2048;
     double const level = level_of(render_light(scene)), found = scatter_of_images(scene, level);
-    double const stated = measure_image_error(scene, level);
+    double const stated = measure_image_error(scene, scene.plan, level);
     EXPECT_GT(found, 0.1);
     EXPECT_NEAR(stated / found, 1, 0.25) << stated << " levels for " << found;
   }
@@ -72,12 +72,12 @@ TEST(ImageError, IsTheScatterOfImagesOfAllDots) {
 
 // With adaptive numbers of rays, the stated standard error is the scatter, too.
 TEST(ImageError, IsTheScatterOfAdaptiveRays) {
-  Scene scene = wave_scene(Focus::target);
+  PlannedScene scene = wave_scene(Focus::target);
   scene.setup.camera.bit_depth = 8;
   scene.setup.render.rays_per_dot.reset();
-  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+  scene.plan = plan_rays_by_tracing(scene, scene.plan);
   double const level = level_of(render_light(scene)) * 4095 / 255;
-  double const stated = measure_image_error(scene, level), found = scatter_of_images(scene, level);
+  double const stated = measure_image_error(scene, scene.plan, level), found = scatter_of_images(scene, level);
   EXPECT_NEAR(stated / found, 1, 0.25) << stated << " levels for " << found;
 }
 
@@ -85,10 +85,10 @@ TEST(ImageError, IsTheScatterOfAdaptiveRays) {
 // the mean where dots overlap, is that of the brightest of some thousand pixels to 25 %.
 TEST(BrightestPixel, IsThatOfTheImageOfAllDots) {
   for (Focus const focus : {Focus::target, Focus::medium}) {
-    Scene scene = wave_scene(focus);
-    scene.rays_per_dot = 256;
+    PlannedScene scene = wave_scene(focus);
+    scene.plan.rays = 256;
     double const found = level_of(render_light(scene)) * 0.9 * 4095;
-    EXPECT_NEAR(brightest_pixel(render_sample(scene)) / found, 1, 0.25);
+    EXPECT_NEAR(brightest_pixel(render_sample(scene, scene.plan)) / found, 1, 0.25);
   }
 }
 

@@ -19,7 +19,7 @@ namespace gladstone {
 namespace {
 
 /// The set-up of Table 1 with a volume of 8.8 x 10.4 x 7.2 mm, one side face of which is in view.
-Scene volume_in_view(std::uint64_t rays) {
+PlannedScene volume_in_view(std::uint64_t rays) {
   FieldSetup field;
   field.kind = FieldKind::file;
   field.file = testing::TempDir() + "volume_in_view.nrrd";
@@ -39,13 +39,15 @@ Scene volume_in_view(std::uint64_t rays) {
   return scene_with_dots(setup, lattice(96, 8, 11), rays);
 }
 
-Rendering render(Scene const& scene) { return cpu().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes); }
+Rendering render(PlannedScene const& scene) {
+  return cpu().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::yes);
+}
 
 // For a source that is not listed, either all straight rays to the pupil cross the volume from face to face, or none
 // does.
 TEST(SideFaces, CutTheConesOfThoseListedAlone) {
-  Scene const scene = volume_in_view(32);
-  std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.dots);
+  PlannedScene const scene = volume_in_view(32);
+  std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.plan, scene.dots);
   EXPECT_GT(listed.size(), 8u);
   EXPECT_LE(listed.size(), scene.dots.centre.size() / 2);
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
@@ -73,32 +75,32 @@ TEST(SideFaces, CutTheConesOfThoseListedAlone) {
   // a closed form has no side faces
   gladstone::Setup setup = table1_setup(96);
   setup.medium.field = sinusoid(0.1, 4e-3);
-  Scene const wave = scene_with_dots(setup, lattice(96, 8, 11), 32);
-  EXPECT_TRUE(sources_at_side_faces(wave, wave.dots).empty());
+  PlannedScene const wave = scene_with_dots(setup, lattice(96, 8, 11), 32);
+  EXPECT_TRUE(sources_at_side_faces(wave, wave.plan, wave.dots).empty());
 }
 
 // Dots whose cones are cut by a face are traced ray by ray, with separate rays: the truth is correct within its stated
 // error, and there is no light where there are no rays. (A smooth fit to 32 rays had errors of three quarters of full
 // scale in single pixels.)
 TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
-  Scene scene = volume_in_view(32);
+  PlannedScene scene = volume_in_view(32);
   scene.setup.render.rays_per_dot.reset();
-  scene.adaptive_criteria = AdaptiveRayCriteria{1e-7, 3685};  // as many rays as are allowed
-  auto const most = static_cast<std::int64_t>(max_rays_per_source(scene));
+  scene.plan.adaptive_criteria = AdaptiveRayCriteria{1e-7, 3685};  // as many rays as are allowed
+  auto const most = static_cast<std::int64_t>(max_rays_per_source(scene, scene.plan));
   // The bounds below are those of 8192 rays. Errors of a cone that is cut in two decrease between 1/sqrt(rays) and
   // 1/rays, so that with fewer rays they are larger by at most the ratio of the numbers.
   double const fewer = std::max(1.0, 8192.0 / static_cast<double>(most));
-  std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.dots);
+  std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.plan, scene.dots);
   std::vector<std::size_t> const left =
-      FocusedDotsRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no).left;
+      FocusedDotsRenderer().render(scene, scene.plan, scene.dots, RenderImages::no, RenderTheory::no).left;
   EXPECT_TRUE(std::includes(left.begin(), left.end(), listed.begin(), listed.end()));
   EXPECT_LE(left.size(), scene.dots.centre.size() / 2);
   Rendering const found = render(scene);
-  Scene exact = scene;
-  exact.adaptive_criteria.reset();
-  exact.rays_per_dot = 65536;
+  PlannedScene exact = scene;
+  exact.plan.adaptive_criteria.reset();
+  exact.plan.rays = 65536;
   exact.setup.render.seed = 99;
-  Rendering const plain = RaysRenderer().render(exact, exact.dots, RenderImages::yes, RenderTheory::yes);
+  Rendering const plain = RaysRenderer().render(exact, exact.plan, exact.dots, RenderImages::yes, RenderTheory::yes);
   for (std::size_t dot = 0; dot < scene.dots.centre.size(); ++dot) {
     bool const at_face = std::binary_search(left.begin(), left.end(), dot);
     // a dot outside the volume requires no ray
@@ -138,7 +140,7 @@ TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
 // Each ray counts once: the number that reaches the sensor plane is that of the dots, and the total is the number
 // traced, although the fast renderer also traced rays of the dots that it rejected.
 TEST(SideFaces, RaysThereAreCountedOnce) {
-  Scene const scene = volume_in_view(32);
+  PlannedScene const scene = volume_in_view(32);
   Rendering const found = render(scene);
   std::int64_t traced = 0;
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
@@ -154,7 +156,7 @@ TEST(SideFaces, RaysThereAreCountedOnce) {
 
 // The light of dark dots is subtracted from that of white paper once.
 TEST(SideFaces, DarkDotsAreWhiteLessBright) {
-  Scene scene = volume_in_view(32);
+  PlannedScene scene = volume_in_view(32);
   Rendering const bright = render(scene);
   scene.setup.target.polarity = Polarity::dark;
   Rendering const dark = render(scene);
@@ -167,15 +169,15 @@ TEST(SideFaces, DarkDotsAreWhiteLessBright) {
 // With rays_per_dot = "auto", these dots take as many rays as each requires, more than the others, and reach the goal
 // of the truth; the others are rendered as if they were alone.
 TEST(SideFaces, AutoTakesTheRaysThatDotsThereRequire) {
-  Scene scene = volume_in_view(1);
+  PlannedScene scene = volume_in_view(1);
   scene.setup.render.rays_per_dot.reset();
-  RayBudget const budget = choose_ray_budget(scene);
-  EXPECT_TRUE(budget.adaptive_criteria);
-  EXPECT_LE(budget.rays, 256u);
-  scene = with_rays(scene, budget);
-  std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.dots);
+  scene.plan = plan_rendering(scene);
+  EXPECT_TRUE(scene.plan.adaptive_criteria);
+  EXPECT_LE(scene.plan.rays, 256u);
+  std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.plan, scene.dots);
   Rendering const found = render(scene);
-  Rendering const alone = FocusedDotsRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no);
+  Rendering const alone =
+      FocusedDotsRenderer().render(scene, scene.plan, scene.dots, RenderImages::no, RenderTheory::no);
   std::int64_t most = 0;
   for (std::size_t dot = 0; dot < found.truth.size(); ++dot) {
     if (std::binary_search(listed.begin(), listed.end(), dot)) {
@@ -185,13 +187,13 @@ TEST(SideFaces, AutoTakesTheRaysThatDotsThereRequire) {
       EXPECT_EQ(found.truth.displacement_px[dot], alone.truth.displacement_px[dot]) << dot;
     }
   }
-  EXPECT_GE(most, 4 * static_cast<std::int64_t>(budget.rays));
+  EXPECT_GE(most, 4 * static_cast<std::int64_t>(scene.plan.rays));
 }
 
 /// The dots at side faces alone, as the general renderer traces them with a given number of rays.
-Scene dots_at_faces(std::uint64_t rays) {
-  Scene scene = volume_in_view(rays);
-  scene.dots = select_dots(scene.dots, sources_at_side_faces(scene, scene.dots));
+PlannedScene dots_at_faces(std::uint64_t rays) {
+  PlannedScene scene = volume_in_view(rays);
+  scene.dots = select_dots(scene.dots, sources_at_side_faces(scene, scene.plan, scene.dots));
   return scene;
 }
 
@@ -202,10 +204,11 @@ double largest(Image<double> const& image) { return *std::max_element(image.begi
 // dots is accurate to about a tenth; half of the factor is required.
 TEST(SideFaces, AreMeasuredWithAGivenNumber) {
   auto const measured = [](std::uint64_t rays) {
-    Scene const scene = dots_at_faces(rays);
-    Rendering const found = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+    PlannedScene const scene = dots_at_faces(rays);
+    Rendering const found = RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no);
     double const level = largest(found.light.flow) / (0.9 * 4095);
-    return std::pair{truth_accuracy(found.truth, truth_tolerance_px).rms_px, measure_image_error(scene, level)};
+    return std::pair{truth_accuracy(found.truth, truth_tolerance_px).rms_px,
+                     measure_image_error(scene, scene.plan, level)};
   };
   auto const few = measured(32), many = measured(2048);
   EXPECT_GT(few.first, truth_tolerance_px);
@@ -217,12 +220,13 @@ TEST(SideFaces, AreMeasuredWithAGivenNumber) {
 // The stated errors of the images apply: images of these dots with 32 rays are compared with those of other random
 // rays, which scatter equally. A factor of two is allowed for the choice of illuminated pixels.
 TEST(SideFaces, ImagesAreOffByTheStatedError) {
-  Scene const scene = dots_at_faces(32);
-  Scene other = scene;
+  PlannedScene const scene = dots_at_faces(32);
+  PlannedScene other = scene;
   other.setup.render.seed = 99;
   RaysRenderer renderer;
-  Image<double> const one = renderer.render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light.flow,
-                      two = renderer.render(other, other.dots, RenderImages::yes, RenderTheory::no).light.flow;
+  Image<double> const
+      one = renderer.render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no).light.flow,
+      two = renderer.render(other, other.plan, other.dots, RenderImages::yes, RenderTheory::no).light.flow;
   double const level = largest(two) / (0.9 * 4095);
   double square = 0, lit = 0;
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -231,7 +235,7 @@ TEST(SideFaces, ImagesAreOffByTheStatedError) {
     square += (a - b) * (a - b) / (2 * level * level);
     ++lit;
   }
-  double const found = std::sqrt(square / lit), stated = measure_image_error(scene, level);
+  double const found = std::sqrt(square / lit), stated = measure_image_error(scene, scene.plan, level);
   EXPECT_GT(stated, found / 2);
   EXPECT_LT(stated, found * 2);
 }
@@ -251,11 +255,12 @@ TEST(ParticlesNearView, AreAllThatFramesShow) {
   plume.radius = 4e-3;
   setup.medium.field = plume;
   setup.medium.thickness = 20e-3;
-  Scene const stepped = with_chosen_step(build_scene(setup));
-  Scene const scene = with_rays(stepped, choose_ray_budget(stepped));
-  Rendering const near = cpu().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+  PlannedScene scene(build_scene(setup));
+  scene.plan = plan_rendering(scene);
+  Rendering const near =
+      cpu().render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered, RenderImages::yes);
   Rendering const every =
-      RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+      RaysRenderer().render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered, RenderImages::yes);
   EXPECT_TRUE(std::equal(near.light.reference.begin(), near.light.reference.end(), every.light.reference.begin()));
   EXPECT_TRUE(std::equal(near.light.flow.begin(), near.light.flow.end(), every.light.flow.begin()));
   std::size_t skipped = 0;
@@ -288,11 +293,11 @@ TEST(RenderSeconds, CountTheoryOfEveryDot) {
   for (RenderMethod const method : {RenderMethod::focused_dots, RenderMethod::rays}) {
     setup.render.method = method;
     auto const of_theory = [&](int per_side, double step_share) {
-      Scene scene = scene_with_dots(setup, lattice(96, per_side, 80.0 / per_side), 16);
-      scene.step *= step_share;
-      double const without = render_seconds(scene, RenderTheory::no);
+      PlannedScene scene = scene_with_dots(setup, lattice(96, per_side, 80.0 / per_side), 16);
+      scene.plan.step *= step_share;
+      double const without = render_seconds(scene, scene.plan, RenderTheory::no);
       EXPECT_GT(without, 0);
-      return render_seconds(scene, RenderTheory::yes) - without;
+      return render_seconds(scene, scene.plan, RenderTheory::yes) - without;
     };
     double const few = of_theory(4, 1);
     EXPECT_GT(few, 16 * 100 * 32 * 10e-9);

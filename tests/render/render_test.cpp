@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/planning.h"
 #include "tests/scene/piv_setups.h"
@@ -21,9 +22,13 @@ TEST(Render, ChoosesStepAndMethodOfAScene) {
   Scene const scene = build_scene(setup);
   Device device = cpu();
   Rendering const rendering = render(scene, device);
-  EXPECT_EQ(scene.step, 0) << "a scene is not changed";
-  EXPECT_EQ(rendering.method, RenderMethod::focused_dots);
+  EXPECT_EQ(rendering.plan.method, RenderMethod::focused_dots);
   EXPECT_EQ(rendering.device, "cpu");
+  // The accuracy is reported: with 32 rays, the error of the table in such a smooth field is within the goals.
+  ASSERT_TRUE(rendering.accuracy && rendering.accuracy->table);
+  EXPECT_LE(rendering.accuracy->table->excess(), 1);
+  EXPECT_LT(rendering.accuracy->truth.rms_px, truth_tolerance_px);
+  EXPECT_TRUE(std::isnan(rendering.accuracy->image_levels)) << "no dot is traced by rays alone";
   EXPECT_GT(rendering.rays, 0);
   ASSERT_EQ(rendering.truth.size(), scene.dots.centre.size());
   double largest = 0;
@@ -36,10 +41,11 @@ TEST(Render, ChoosesStepAndMethodOfAScene) {
   EXPECT_FALSE(
       std::equal(rendering.light.reference.begin(), rendering.light.reference.end(), rendering.light.flow.begin()));
 
-  // the same, step by step
-  Scene const stepped = with_step(scene, choose_step(scene));
-  Scene const planned = with_rays(stepped, choose_ray_budget(stepped));
-  Rendering const again = render_planned(planned, device, RenderImages::no, RenderTheory::no);
+  // the same, by a plan made before
+  RenderPlan const plan = plan_rendering(scene);
+  EXPECT_EQ(plan.step, rendering.plan.step);
+  EXPECT_EQ(plan.rays, 32u);
+  Rendering const again = render(scene, plan, device, RenderImages::no, RenderTheory::no);
   EXPECT_EQ(again.truth.displacement_px, rendering.truth.displacement_px);
   EXPECT_TRUE(again.light.flow.empty());
 }

@@ -41,7 +41,7 @@ TEST(CameraPose, LooksAtAPoint) {
   EXPECT_NEAR(setup.z_a, far, 1e-15);
   EXPECT_NEAR(setup.z_b(), 1.1 * far, 1e-15);
   EXPECT_NEAR(setup.target_centre().x, -0.03, 1e-15);
-  // almost the same as a rotation about y by the angle to the axis
+  // this pose nearly equals a rotation about y by the angle to the axis
   gladstone::Setup const turned =
       setup_of("[camera.pose]\nposition_mm = [300, 0, 700]\nrotation_deg = [0, 23.19859051364819, 0]\n");
   EXPECT_NEAR(length(turned.camera_pose().z - pose.z), 0, 1e-12);

@@ -160,7 +160,7 @@ TEST(PosedCamera, SizesOfDotsInPixelsAreThoseOfTheirImages) {
     setup.target.dot_diameter_px = 4;
     EXPECT_NEAR(image_area(setup, setup.dot_diameter()) / (pi * 4), 1, 1e-4) << scheimpflug;
     EXPECT_EQ(2 * build_scene(setup).dots.half_size, setup.dot_diameter()) << scheimpflug;
-    // the same for a target with another centre
+    // repeat the check for a target with another centre
     setup.target.centre_m = Vec2d{0.01, 0.005};
     EXPECT_NEAR(image_area(setup, setup.dot_diameter()) / (pi * 4), 1, 1e-4) << scheimpflug;
   }

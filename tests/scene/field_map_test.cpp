@@ -17,8 +17,8 @@ namespace {
 TEST(FieldMap, ShowsAUniformGradientAsItIs) {
   auto setup = table1_setup(128);
   setup.medium.field = uniform_gradient(20, -5);
-  Scene const scene = scene_with_dots(setup, {{64, 64}}, 1);
-  FieldMap const map = map_field(scene, 16);
+  PlannedScene const scene = scene_with_dots(setup, {{64, 64}}, 1);
+  FieldMap const map = map_field(scene, scene.plan.step, 16);
   ASSERT_EQ(map.density.columns(), 8);
   for (int row = 0; row < 8; ++row) {
     for (int column = 0; column < 8; ++column) {
@@ -35,8 +35,8 @@ TEST(FieldMap, ShowsAUniformGradientAsItIs) {
 }
 
 TEST(FieldMap, IsAmbientWithoutAField) {
-  Scene const scene = scene_with_dots(table1_setup(32), {{16, 16}}, 1);
-  FieldMap const map = map_field(scene, 8);
+  PlannedScene const scene = scene_with_dots(table1_setup(32), {{16, 16}}, 1);
+  FieldMap const map = map_field(scene, scene.plan.step, 8);
   EXPECT_EQ(map.density(1, 1), 1.225);
   EXPECT_EQ(map.density_gradient(1, 1), (Vec2d{0, 0}));
 }
@@ -56,7 +56,7 @@ TEST(StrainMap, OfAUniformGradientIsZero) {
 TEST(StrainMap, OfASinusoidHasItsKnownAmplitude) {
   auto setup = table1_setup(512);
   setup.medium.field = sinusoid(0.02, 8e-3);
-  Scene const scene = scene_with_dots(setup, {{64, 64}}, 1);
+  PlannedScene const scene = scene_with_dots(setup, {{64, 64}}, 1);
   StrainMap const map = map_strain(scene);
   double const k = 2 * pi / 8e-3, n0 = 1 + 2.26e-4 * 1.225;
   double const h = map.spacing_px * 10e-6 / scene.imaging.magnification * 0.75;

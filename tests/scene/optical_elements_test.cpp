@@ -45,7 +45,8 @@ TEST(WedgePrism, DeflectsTowardsItsThickSide) {
   EXPECT_NEAR(std::asin(-ray.direction.x), (n - 1) * 1e-3, 1.1 * n * (n * n - 1) / 6 * 1e-9);
 }
 
-// The faces of a prism with 10 mm at the centre and an angle of 0.3 meet 10 mm / tan(0.3) = 32.3 mm beside it.
+// The faces of a prism with 10 mm at the centre and an angle of 0.3 intersect at a distance of 10 mm / tan(0.3) = 32.3
+// mm from the centre.
 TEST(WedgePrism, EndsWhereItsThicknessIsZero) {
   Ray<double> ray;
   double const edge = 10e-3 / std::tan(0.3);

@@ -4,7 +4,8 @@
 
 namespace gladstone {
 
-/// PIV with the lens of Table 1 at f/8, 750 mm in front of a sheet of uniform light, with white spheres of 1 um.
+/// Returns a PIV setup with the lens of Table 1 at f/8, 750 mm in front of a uniform light sheet, and with white
+/// spheres of 1 um.
 /// @param sheet,depth  thickness of the light sheet and of the volume with particles, along the line of sight [m]
 inline Setup piv_setup(double sheet, double depth) {
   constexpr double mm = 1e-3;

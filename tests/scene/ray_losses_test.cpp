@@ -31,8 +31,8 @@ TEST(RayLosses, AreCountedBySurfaceAndCause) {
       std::make_shared<Lens const>(build_lens(read_prescription(path), GlassCatalogue::shipped(), 532e-9));
   setup.lens.focal_length = paraxial_lens(*setup.lens.prescription).effective_focal_length;
   setup.lens.f_number = 10;
-  Scene const scene = scene_with_dots(setup, {{31.5, 31.5}}, 32);
-  RayLosses const losses = sample_ray_losses(scene);
+  PlannedScene const scene = scene_with_dots(setup, {{31.5, 31.5}}, 32);
+  RayLosses const losses = sample_ray_losses(scene, scene.plan);
   EXPECT_EQ(losses.sources, 1u);
   EXPECT_EQ(losses.rays, 256u);
   double const r = 51.5 / 0.5168 / 20, rim = r * (1 + 3.6 / (1.5168 * 1000) - 3.6 * 0.5168 / (1.5168 * 51.5));
@@ -49,8 +49,8 @@ TEST(RayLosses, AreCountedBySurfaceAndCause) {
 TEST(RayLosses, ReportRaysDeflectedPastStop) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(150, 0);
-  Scene const scene = scene_with_dots(setup, lattice(64, 3, 18), 32);
-  RayLosses const losses = sample_ray_losses(scene);
+  PlannedScene const scene = scene_with_dots(setup, lattice(64, 3, 18), 32);
+  RayLosses const losses = sample_ray_losses(scene, scene.plan);
   EXPECT_EQ(losses.sources, 9u);
   double const q = 2.26e-4 * 0.01 * 150 * 0.75 / (105e-3 / 11);
   double const lost = 1 - 2 / pi * (std::acos(q) - q * std::sqrt(1 - q * q));
@@ -69,8 +69,8 @@ TEST(RayLosses, NameSurfacesBehindAWindowAsTheLensCountsThem) {
   window.thickness = 10e-3;
   window.position = {0, 0, 100e-3};
   setup.elements = {window};
-  Scene const scene = scene_with_dots(setup, {{2, 2}, {61, 61}}, 32);
-  RayLosses const losses = sample_ray_losses(scene);
+  PlannedScene const scene = scene_with_dots(setup, {{2, 2}, {61, 61}}, 32);
+  RayLosses const losses = sample_ray_losses(scene, scene.plan);
   EXPECT_FALSE(losses.lost.empty());
   for (ElementRayLoss const& lost : losses.lost) {
     EXPECT_EQ(lost.place.find("surface"), 0u) << lost.place << ": light is lost at the edges of the lens only";

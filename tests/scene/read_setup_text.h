@@ -7,12 +7,13 @@
 
 #include "render/scene/setup.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/expect_warning.h"
 
 namespace gladstone {
 
 struct ReadSetup {
   Setup setup;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Reads and cross-checks a setup, case.toml, as the commands do.
@@ -25,7 +26,8 @@ inline ReadSetup read_setup_text(std::string const& text) {
   return result;
 }
 
-/// Matches a function that throws a SetupError with a problem of case.toml. @param where  begin of "line:column"
+/// Matches a function that throws a SetupError with a problem of case.toml. @param where beginning of the problem's
+/// "line:column"
 inline auto refused(ErrorCode code, std::string const& where) {
   auto const is_it = [code, begin = "case.toml:" + where](SetupProblem const& one) {
     return one.code == code && one.where.starts_with(begin);
@@ -34,7 +36,7 @@ inline auto refused(ErrorCode code, std::string const& where) {
       testing::Property("problems", &SetupError::problems, testing::Contains(testing::Truly(is_it))));
 }
 
-/// The same, where the test is about a number in the message.
+/// Like refused() above, for tests about a number in the message.
 inline auto refused(ErrorCode code, std::string const& where, std::string const& number) {
   return testing::AllOf(refused(code, where), testing::ThrowsMessage<SetupError>(testing::HasSubstr(number)));
 }

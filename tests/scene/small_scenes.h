@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "render/focused_dots/focused_dots_renderer.h"
-#include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
-#include "render/scene/scene.h"
+#include "tests/scene/planned_scene.h"
 
 namespace gladstone {
 
-/// Table 1 with a smaller sensor: f = 105 mm, f/11, Z_A = 0.75 m, Z_D = 0.25 m, pixels of 10 um.
+/// Returns the setup of Table 1 with a smaller sensor: f = 105 mm, f/11, Z_A = 0.75 m, Z_D = 0.25 m, pixels of 10 um.
 inline Setup table1_setup(int pixels) {
   Setup setup;
   setup.camera.columns = setup.camera.rows = pixels;
@@ -25,12 +24,13 @@ inline FieldSetup uniform_gradient(double along_x, double along_y, double along_
   return UniformGradient<double>{{}, {along_x, along_y, along_z}};
 }
 
-/// rho = ambient + amplitude sin(2 pi d . x / wavelength) [kg/m^3, m]
+/// Returns the field rho = ambient + amplitude sin(2 pi d . x / wavelength), with amplitude in kg/m^3 and wavelength in
+/// m.
 inline FieldSetup sinusoid(double amplitude, double wavelength, Vec2d direction = {1, 0}) {
   return Sinusoid<double>::wave(amplitude, wavelength, direction);
 }
 
-/// Returns the DNS plane of that name, scaled as in the demo: 1.225 kg/m^3, 32 mm, periodic in x and y, extruded over
+/// Returns the DNS plane of an instant, scaled as in the demo: 1.225 kg/m^3, 32 mm, periodic in x and y, extruded over
 /// the thickness.
 inline FieldSetup dns_plane(std::string const& instant) {
   FieldSetup field;
@@ -44,39 +44,34 @@ inline FieldSetup dns_plane(std::string const& instant) {
   return field;
 }
 
-/// Plans the step of a scene and sets it.
-inline IntegrationStep plan_step(Scene& scene) {
-  IntegrationStep const plan = determine_step_by_tracing(scene);
-  scene = with_step(std::move(scene), plan);
-  return plan;
-}
-
 /// Returns a scene with dots at given positions in the reference image [px] and a given number of rays, with its step
 /// and margin planned.
-inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px, std::uint64_t rays) {
+inline PlannedScene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px, std::uint64_t rays) {
   Setup bare = setup;
   bare.target.dots_per_32px_window = 1;
   bare.target.dot_diameter_px = 0;
-  Scene scene = build_scene(bare);
+  PlannedScene scene(build_scene(bare));
   scene.setup = setup;
   scene.dots.half_size = setup.dot_diameter() / 2;
   scene.dots.centre.clear();
   for (Vec2d const p : at_px) scene.dots.centre.push_back(scene.to_target(p));
   plan_step(scene);
-  scene.setup.render.rays_per_dot = scene.rays_per_dot = rays;
+  scene.setup.render.rays_per_dot = scene.plan.rays = rays;
   return scene;
 }
 
 /// Renders a scene by the fast renderer, or by the general one if the fast renderer does not support all of its dots.
-inline Rendering render_either(Scene const& scene, RenderImages images, RenderTheory theory) {
-  if (focused_dots(scene)) {
-    Rendering rendering = FocusedDotsRenderer().render(scene, scene.dots, images, theory);
+inline Rendering render_either(PlannedScene const& scene, RenderImages images, RenderTheory theory) {
+  if (focused_dots(scene, scene.plan)) {
+    Rendering rendering = FocusedDotsRenderer().render(scene, scene.plan, scene.dots, images, theory);
     if (rendering.left.empty()) return rendering;
   }
-  return RaysRenderer().render(scene, scene.dots, images, theory);
+  return RaysRenderer().render(scene, scene.plan, scene.dots, images, theory);
 }
-inline Rendering render_all(Scene const& scene) { return render_either(scene, RenderImages::yes, RenderTheory::yes); }
-inline GroundTruth trace_truth(Scene const& scene, RenderTheory theory = RenderTheory::yes) {
+inline Rendering render_all(PlannedScene const& scene) {
+  return render_either(scene, RenderImages::yes, RenderTheory::yes);
+}
+inline GroundTruth trace_truth(PlannedScene const& scene, RenderTheory theory = RenderTheory::yes) {
   return render_either(scene, RenderImages::no, theory).truth;
 }
 

@@ -126,16 +126,16 @@ TEST(WideAngleCamera, SourcesSeeTheWholeStop) {
 TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
   auto setup = wide_setup(36, 8e-6);  // corners at 0.204 mm, 63 degrees
   setup.target.dots_per_32px_window = 1;
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   scene.dots.centre.clear();
   for (double const degrees : {0.0, 40.0, 60.0}) {
     Vec3d const point = point_at(degrees, 0.25 * pi);
     scene.dots.centre.push_back({point.x, point.y});
   }
   scene.dots.half_size = 1e-6;
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene.rays_per_dot = 1024;
-  Rendering const result = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+  plan_step(scene);
+  scene.plan.rays = 1024;
+  Rendering const result = RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no);
   for (std::size_t dot = 0; dot < 3; ++dot) {
     auto const pixel = scene.camera.project({scene.dots.centre[dot].x, scene.dots.centre[dot].y, -setup.z_d});
     ASSERT_TRUE(pixel);
@@ -146,16 +146,16 @@ TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
 }
 
 /// Renders dots of one size at the listed angles from the axis, with 4096 rays each.
-Rendering render_dots(Scene scene, std::vector<double> const& degrees, double half_size) {
+Rendering render_dots(PlannedScene scene, std::vector<double> const& degrees, double half_size) {
   scene.dots.centre.clear();
   for (double const angle : degrees) {
     Vec3d const point = point_at(angle, 0.25 * pi);
     scene.dots.centre.push_back({point.x, point.y});
   }
   scene.dots.half_size = half_size;
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene.rays_per_dot = 4096;
-  return RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  plan_step(scene);
+  scene.plan.rays = 4096;
+  return RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::yes);
 }
 
 // Dots of 3 mm are 30 times as wide as the pupil. Each of their rays is directed at the pupil as seen from its own
@@ -165,7 +165,7 @@ Rendering render_dots(Scene scene, std::vector<double> const& degrees, double ha
 TEST(WideAngleRendering, DotsLargerThanThePupilLoseNoRays) {
   auto setup = wide_setup(65, 8e-6);
   setup.target.dots_per_32px_window = 1;
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   std::vector<double> const degrees{0, 40, 70};
   constexpr double point = 1e-9, large = 1.5e-3;
   Rendering const points = render_dots(scene, degrees, point), dots = render_dots(scene, degrees, large);
@@ -189,9 +189,9 @@ TEST(WideAngleRendering, DotsLargerThanThePupilLoseNoRays) {
 TEST(WideAngleRendering, TargetAreasOfLargeDotsHoldTheWholeStop) {
   auto setup = wide_setup(65, 8e-6);
   setup.target.dots_per_32px_window = 1;
-  Scene scene = build_scene(setup);
-  scene.rays_per_dot = 4096;
-  RaysLaunch const launch(scene, SpotView{}, StopRim::sharp);
+  PlannedScene scene(build_scene(setup));
+  scene.plan.rays = 4096;
+  RaysLaunch const launch(scene, scene.plan, SpotView{}, StopRim::sharp);
   constexpr double reach = 5e-3;
   for (double const degrees : {0.0, 45.0, 70.0}) {
     Vec3d const middle = point_at(degrees, 1.1);
@@ -226,8 +226,8 @@ TEST(WideAngleRendering, TargetAreasOfLargeDotsHoldTheWholeStop) {
 TEST(WideAngleRendering, SmallSourcesAimAtThePupilSeenFromTheirMiddle) {
   auto setup = wide_setup(65, 8e-6);
   setup.target.dots_per_32px_window = 1;
-  Scene const scene = build_scene(setup);
-  RaysLaunch const launch(scene, SpotView{}, StopRim::sharp);
+  PlannedScene const scene(build_scene(setup));
+  RaysLaunch const launch(scene, scene.plan, SpotView{}, StopRim::sharp);
   Vec3d const middle = point_at(40, 1.1);
   auto const disc = launch.sight(middle);
   ASSERT_TRUE(disc);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/base/units.h"
+#include "tests/support/edge_integral.h"
 
 namespace gladstone {
 namespace {
@@ -88,7 +89,7 @@ TEST(GaussianSpot, SharesAreIntegralsOverPixels) {
       double const share = shares[static_cast<std::size_t>(i)];
       GaussianSpot<double> const spot{sigma};
       EXPECT_NEAR(share, integral, 2e-7);
-      EXPECT_NEAR(share, spot.edge_integral(p, at.column, i + 1) - spot.edge_integral(p, at.column, i), 1e-15);
+      EXPECT_NEAR(share, edge_integral(spot, p, at.column, i + 1) - edge_integral(spot, p, at.column, i), 1e-15);
     }
   }
 }

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "render/setup/setup_node.h"
 #include "tests/support/expect_error.h"
@@ -452,47 +450,6 @@ TEST(SetupDocument, ALongKeyIsCutInItsMessage) {
   auto const found = messages(setup);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_LT(found[0].size(), 200u);
-}
-
-TEST(SetupDocument, AFileWithoutAnyKeyIsNoSetup) {
-  auto const path = (std::filesystem::path(testing::TempDir()) / "empty_setup.toml").string();
-  for (char const* text : {"", "\n\n", "# nothing but a remark\n"}) {
-    std::ofstream(path) << text;
-    try {
-      SetupDocument::from_file(path);
-      FAIL() << "accepted";
-    } catch (SetupError const& error) {
-      EXPECT_EQ(code_and_place(error.problems()[0]), "syntax at empty_setup.toml");
-    }
-  }
-  std::filesystem::remove(path);
-}
-
-TEST(SetupDocument, MissingFileAndFolderAreNamed) {
-  for (auto const& [path, code] :
-       {std::pair{"/no/such/setup.toml", ErrorCode::missing_file}, std::pair{"/tmp", ErrorCode::unreadable_file}}) {
-    try {
-      SetupDocument::from_file(path);
-      FAIL() << "accepted " << path;
-    } catch (SetupError const& error) {
-      EXPECT_EQ(error.problems()[0].where, path);
-      EXPECT_EQ(error.problems()[0].code, code);
-    }
-  }
-}
-
-TEST(SetupDocument, FileNamesAreRelativeToTheSetup) {
-  auto const folder = std::filesystem::path(testing::TempDir()) / "setup_paths";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "case.toml") << "file = '../field.h5'\nother = '/abs/x.h5'\nempty = ''\n";
-  auto setup = SetupDocument::from_file((folder / "case.toml").string());
-  EXPECT_EQ(setup.root().required_path("file"), (folder.parent_path() / "field.h5").lexically_normal().string());
-  EXPECT_EQ(setup.root().required_path("other"), "/abs/x.h5");
-  EXPECT_EQ(setup.root().required_path("empty"), "");
-  auto const found = problems(setup);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0], "invalid_value at case.toml:3:1");
-  std::filesystem::remove_all(folder);
 }
 
 /// Reads every kind of key, and returns the resolved text, which must contain and reproduce all values.

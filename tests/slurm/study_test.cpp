@@ -27,8 +27,8 @@ bool comes_true(std::function<bool()> const& condition, std::chrono::seconds lim
   return true;
 }
 
-/// A study of six cases, planned twice: "local" is run here, "cluster" by a Slurm cluster's array. Cases that the test
-/// claims keep the tasks that have them waiting, so that tasks can be met at work.
+/// A study of six cases, planned twice: "local" is run here, "cluster" by a Slurm cluster's array. The test claims some
+/// cases, so that the tasks that are to compute them wait and can be disturbed while they run.
 class StudyOnACluster : public ProgramFixture {
  protected:
   void SetUp() override {
@@ -96,8 +96,9 @@ TEST_F(StudyOnACluster, AnArrayGivesWhatALocalRunGives) {
   expect_same_study();
 }
 
-// Two of three tasks are killed at work, one by the user's scancel and one by kill -9, as for want of memory. The study
-// is incomplete and says so; submitted again it computes what is missing, and nothing else.
+// Two of three tasks are killed while they run: one by the user's scancel, and one by kill -9, as if memory were
+// insufficient. The study is then reported as incomplete; when it is submitted again, only the missing cases are
+// computed.
 TEST_F(StudyOnACluster, KilledTasksAreMadeUpForByTheNextSubmission) {
   {
     CaseLocks claims(in("cluster").string(), CaseLocks::Use::take);

@@ -137,7 +137,7 @@ def kill_command(bench, rng, place):
 
 @fault
 def full_disk_command(bench, rng, place):
-    """The same commands with a limit of the file size."""
+    """Any command with a limit of the file size."""
     name, path, arguments, known, has_old = draw_command(bench, rng, place)
     largest = max(len(one) for one in known["new"].values()) if isinstance(known["new"], dict) else len(known["new"])
     if os.path.isdir(bench.at(f"results/{name}/new/{COMMANDS[name][0]}")):

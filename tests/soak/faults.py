@@ -98,7 +98,7 @@ def kill_render_over(bench, rng, place):
     kill(bench, rng, bench.seconds["render"], rng.choice([place, case]), "render", bench.at("a.toml"), "-o", case)
     state = bench.state(case)
     if state == "absent":
-        raise Wrong("the old case is gone and there is no new one")
+        raise Wrong("the old case was removed without a new one")
     whole_case(bench, place, "a")
     return {"a": "new", "b": "old"}.get(state, state)
 

@@ -17,7 +17,9 @@ namespace {
 class NominalGpu final : public Renderer {
  public:
   std::string device() const override { return "cuda"; }
-  Rendering render(Scene const&, DotPattern const&, RenderImages, RenderTheory) override { return {}; }
+  Rendering render(Scene const&, RenderPlan const&, DotPattern const&, RenderImages, RenderTheory) override {
+    return {};
+  }
 };
 
 // With --device auto, the CPU correlates if the GPU does not support the settings; the result must name the device that

@@ -8,6 +8,7 @@
 
 #include "render/base/units.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/expect_warning.h"
 
 namespace gladstone {
 namespace {
@@ -73,8 +74,8 @@ TEST(CalibrationFit, CorrectsTheMiddleDotsOfTwoPlanesOfATiltedPlate) {
     EXPECT_NEAR(calibration.pinhole.camera.fx(), focal_length_px, 0.01);
     EXPECT_NEAR(calibration.pinhole.camera.fy(), focal_length_px, 0.01);
     EXPECT_EQ(calibration.drift, Vec2d{});
-    EXPECT_THAT(calibration.warnings, testing::ElementsAre(testing::HasSubstr("plane0.tif: the middle dot was wrong"),
-                                                           testing::HasSubstr("plane2.tif: the middle dot was wrong")));
+    EXPECT_THAT(calibration.warnings,
+                testing::ElementsAre(Warns("assumed at plane0.tif"), Warns("assumed at plane2.tif")));
   }
 }
 
@@ -87,7 +88,7 @@ TEST(CalibrationFit, RefusesACameraOfUnequalFocalLengthsFromGuessedMiddleDots) {
   EXPECT_THAT([&] { fitted(dots); },
               ThrowsDataError(ErrorCode::inconsistent, "", testing::HasSubstr("plane0.tif, plane2.tif")));
   EXPECT_THAT(fitted(dots, CentreDotMethod::whole_grid).warnings,
-              testing::Contains(testing::HasSubstr("differ, although")))
+              testing::Contains(Warns("implausible", testing::HasSubstr("fy"))))
       << "if every image shows the whole grid, the plate's motion must be wrong";
 }
 
@@ -98,7 +99,7 @@ TEST(CalibrationFit, WarnsOfAFocalLengthThatIsNotTheLenss) {
     dots.spacing *= share;
     return fitted(dots, CentreDotMethod::whole_grid).warnings;
   };
-  auto const warns = testing::Contains(testing::HasSubstr("the focal length of"));
+  auto const warns = testing::Contains(Warns("implausible"));
   EXPECT_THAT(warnings(0.96), warns);
   EXPECT_THAT(warnings(1.03), warns);
   EXPECT_THAT(warnings(0.99), testing::Not(warns));
@@ -128,7 +129,8 @@ TEST(CalibrationFit, RefusesResidualsThatTheScatterWithinPlanesDoesNotExplain) {
               ThrowsDataError(ErrorCode::inconsistent, "plane0.tif",
                               testing::AllOf(testing::HasSubstr("1.1"), testing::HasSubstr("Z = -20 mm"))));
   EXPECT_THAT(fitted(dots_of_turned_plane(0.2 * degree), CentreDotMethod::whole_grid).warnings,
-              testing::ElementsAre(testing::AllOf(testing::HasSubstr("0.11"), testing::HasSubstr("Z = -20 mm"))));
+              testing::ElementsAre(
+                  Warns("low_accuracy", testing::AllOf(testing::HasSubstr("0.11"), testing::HasSubstr("Z = -20 mm")))));
   EXPECT_THAT(fitted(dots_of_turned_plane(0.02 * degree), CentreDotMethod::whole_grid).warnings, testing::IsEmpty());
 }
 

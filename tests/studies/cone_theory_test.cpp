@@ -8,7 +8,7 @@
 
 #include "render/base/units.h"
 #include "render/focused_dots/focused_dots_renderer.h"
-#include "render/rays/ray_planning.h"
+#include "tests/scene/planned_scene.h"
 
 namespace gladstone {
 namespace {
@@ -27,7 +27,7 @@ struct ThinLensCase {
 };
 
 /// Table 1 with this lens and distance, point-like dots, and a wave of that strain.
-Scene scene_of(ThinLensCase const& bench) {
+PlannedScene scene_of(ThinLensCase const& bench) {
   gladstone::Setup setup;
   setup.lens.focal_length = bench.focal_length_mm * 1e-3;
   setup.lens.f_number = bench.f_number;
@@ -38,7 +38,7 @@ Scene scene_of(ThinLensCase const& bench) {
   setup.medium.field = Sinusoid<double>::wave(
       strain * setup.ambient_index() / (lever * setup.medium.gladstone_dale * setup.medium.thickness * k * k),
       wavelength);
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   scene.dots.centre.clear();
   // A square of points whose corners are seen at that angle; the spacing and the wavelength are incommensurate.
   double const half = setup.z_b() * std::tan(corner) / std::sqrt(2.0);
@@ -47,8 +47,8 @@ Scene scene_of(ThinLensCase const& bench) {
     for (int i = 0; i <= side; ++i)
       scene.dots.centre.push_back({half * (2.0 * i / side - 1), half * (2.0 * j / side - 1)});
   }
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene.rays_per_dot = 1024;
+  plan_step(scene);
+  scene.plan.rays = 1024;
   return scene;
 }
 
@@ -141,10 +141,10 @@ TEST(PredictedAgreement, OfOneWaveIsItsTransfer) {
   }
 }
 
-// Two waves of energies 1 and 3: the cone transmits nearly all of the first (400 mm), and none of the second (its first
-// zero is at a wavelength of 2.386 mm / 1.21967). The rays are the first wave alone, so that ratio and correlation are
-// sqrt(1/4). The cone of a slice 5 mm from the middle is 2 % wider or narrower, which transmits |H'| 0.02 x = 0.4 *
-// 0.02 * 3.8 of the second wave at that slice, 0 to first order on average: 1e-3 of its amplitude.
+// Two waves of energies 1 and 3: the cone transmits nearly the whole amplitude of the first (400 mm), but zero of the
+// second (its first zero is at a wavelength of 2.386 mm / 1.21967). The rays are the first wave alone, so that ratio
+// and correlation are sqrt(1/4). The cone of a slice 5 mm from the middle is 2 % wider or narrower, which transmits
+// |H'| 0.02 x = 0.4 * 0.02 * 3.8 of the second wave at that slice, 0 to first order on average: 1e-3 of its amplitude.
 TEST(PredictedAgreement, OfAWaveThatPassesAndOneThatDoesNot) {
   gladstone::Setup const setup = points_on_axis();
   double const killed = cone_width(setup) / 1.2196698912665;
@@ -180,8 +180,9 @@ TEST_P(ConeTheory, IsWhatRaysDoOverTheWholeGrid) {
   for (double const f_number : {4.0, 8.0, 16.0, 32.0}) {
     for (double const z_d_mm : {100.0, 250.0, 500.0, 1000.0}) {
       ThinLensCase const bench{GetParam(), f_number, z_d_mm};
-      Scene scene = scene_of(bench);
-      GroundTruth const truth = renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::no).truth;
+      PlannedScene scene = scene_of(bench);
+      GroundTruth const truth =
+          renderer.render(scene, scene.plan, scene.dots, RenderImages::no, RenderTheory::no).truth;
       auto const& setup = scene.setup;
       auto const& wave = *setup.medium.field.closed_form<Sinusoid<double>>();
       double const k = wave.wavevector.x;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "studies/figures/excluded_designs.h"
+#include "tests/studies/support/requirement_bounds.h"
 #include "tests/studies/support/table1_design.h"
 
 namespace gladstone {
@@ -33,13 +34,13 @@ TEST(DesignMap, ShadesWhatARequirementExcludes) {
   DesignPoint<double> const bench = table1_design(given);
   using testing::StartsWith;
   DesignQuestion finer, coarser;
-  finer.requirements.resolution = 0.9 * resolved_wavelength(bench);
-  coarser.requirements.resolution = 1.1 * resolved_wavelength(bench);
+  finer.requirements.limits = {{required::resolution, 0.9 * resolved_wavelength(bench)}};
+  coarser.requirements.limits = {{required::resolution, 1.1 * resolved_wavelength(bench)}};
   EXPECT_THAT(excluding_limit(finer, bench), StartsWith("requirements.resolution_mm = "));
   EXPECT_EQ(excluding_limit(coarser, bench), "");
   DesignQuestion sensitive, blunt;
-  sensitive.requirements.gradient_min = 0.9 * bench.smallest_gradient();
-  blunt.requirements.gradient_min = 1.1 * bench.smallest_gradient();
+  sensitive.requirements.limits = {{required::gradient_min, 0.9 * bench.smallest_gradient()}};
+  blunt.requirements.limits = {{required::gradient_min, 1.1 * bench.smallest_gradient()}};
   EXPECT_THAT(excluding_limit(sensitive, bench), StartsWith("requirements.gradient_min_kg_m4 = "));
   EXPECT_EQ(excluding_limit(blunt, bench), "");
 }
@@ -51,7 +52,7 @@ TEST(DesignMap, AreasOfTheResolutionEndAtTheRequiredWavelength) {
   FixedDesignParameters const given = table1_given();
   DesignPoint<double> const bench = table1_design(given);
   DesignQuestion question;
-  question.requirements.resolution = 4e-3;
+  question.requirements.limits = {{required::resolution, 4e-3}};
   std::vector<ExcludedDesigns> const excluded = excluded_designs(bench, &question);
   ASSERT_FALSE(excluded.empty());
   ASSERT_EQ(excluded.front().limit, "requirements.resolution_mm = 4");

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "studies/case/case.h"
+#include "studies/design/bounds.h"
 #include "studies/design/question.h"
 #include "tests/support/expect_error.h"
 
@@ -38,13 +41,33 @@ TEST(DesignQuestion, IsReadInSi) {
   auto const question = question_of(good);
   ASSERT_TRUE(question);
   EXPECT_EQ(question->requirements.objective, Objective::resolution);
-  EXPECT_DOUBLE_EQ(*question->requirements.z_total_max, 2.4);
-  EXPECT_DOUBLE_EQ(question->requirements.field_of_view->y, 0.09);
-  EXPECT_FALSE(question->requirements.resolution);
+  std::map<std::string, double> limits;
+  for (Limit const& limit : question->requirements.limits) limits[limit.bound->name] = limit.value;
+  EXPECT_EQ(limits.size(), 4u);
+  EXPECT_DOUBLE_EQ(limits.at("limits.z_total_max_mm"), 2.4);
+  EXPECT_DOUBLE_EQ(limits.at("requirements.field_of_view_mm[1]"), 0.09);
   ASSERT_EQ(question->free.size(), 3u);
   EXPECT_EQ(question->free[0].values, (std::vector<double>{8, 11}));
   EXPECT_DOUBLE_EQ(question->free[1].low, 0.3);
   EXPECT_DOUBLE_EQ(question->free[2].values.back(), 0.2);
+}
+
+// A row of the table suffices: every requirement is read at its key, in the unit of its name.
+TEST(DesignQuestion, HasEveryRequirementOfTheTable) {
+  std::map<std::string, std::string> tables{{"requirements", "objective = \"resolution\"\n"}};
+  for (Bound const& bound : requirements())
+    if (bound.component() <= 0)
+      tables[bound.table()] += bound.key() + (bound.component() < 0 ? " = 2.0\n" : " = [2.0, 2.0]\n");
+  std::string text = "[inventory]\nf_numbers = [8]\n[free]\nkeys = [\"lens.f_number\"]\n";
+  for (auto const& [table, keys] : tables) text += '[' + table + "]\n" + keys;
+  auto const question = question_of(text);
+  ASSERT_TRUE(question);
+  std::vector<Limit> const& limits = question->requirements.limits;
+  ASSERT_EQ(limits.size(), requirements().size());
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    EXPECT_EQ(limits[i].bound, &requirements()[i]);
+    EXPECT_DOUBLE_EQ(limits[i].value, 2.0 * limits[i].bound->unit) << limits[i].bound->name;
+  }
 }
 
 TEST(DesignQuestion, WithoutRequirementsIsNone) {

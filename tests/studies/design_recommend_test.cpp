@@ -5,9 +5,11 @@
 #include <random>
 
 #include "render/base/error.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/shared_folder.h"
 #include "studies/design/branches.h"
 #include "studies/design/recommend.h"
+#include "tests/studies/support/requirement_bounds.h"
 #include "tests/studies/support/table1_design.h"
 
 namespace gladstone {
@@ -34,7 +36,7 @@ DesignBranch free_distances(FixedDesignParameters const& given) {
 TEST(Design, FindsTheOptimumOnPaper) {
   FixedDesignParameters const given = table1_given();
   constexpr double f = 0.105, z = 2.4, view = 0.08, sensor = 5.12e-3;
-  std::vector<Limit> const required{{Bound::view_width, view}, {Bound::z_total, z}};
+  std::vector<Limit> const required{{required::view_width, view}, {required::z_total, z}};
   Recommendation const answer = recommend(Objective::gradient_min, required, {free_distances(given)});
   ASSERT_TRUE(answer.feasible());
   BranchOutcome const& best = answer.outcomes.front();
@@ -46,7 +48,7 @@ TEST(Design, FindsTheOptimumOnPaper) {
   EXPECT_THAT(answer.binding, Contains("requirements.field_of_view_mm[0]"));
   // S = f (Z - Z_A) / (Z - f), and a view 1 % wider requires 1 % more Z_A
   for (RequirementCost const& cost : answer.costs) {
-    if (cost.bound == Bound::view_width) {
+    if (cost.bound == required::view_width) {
       EXPECT_NEAR(cost.change, (z - z_a) / (z - 1.01 * z_a) - 1, 1e-6);
     }
   }
@@ -76,7 +78,7 @@ TEST(Design, FindsTheBestDotSize) {
   double best = HUGE_VAL;
   for (double d = 0.02e-3; d <= 0.3e-3; d *= 1.0001) {
     DesignPoint<double> const bench{&given, 0.105, 11, 0.75, 0.25, d};
-    bool const within = bench.dot_image_px() <= random_error_range.most_image && bench.coverage() <= most_coverage;
+    bool const within = bench.dot_image_px() <= random_error_range.most_image && bench.coverage() <= 0.45;
     if (within) best = std::min(best, bench.random_error());
   }
   EXPECT_NEAR(answer.outcomes.front().solution.objective, best, 1e-4 * best);
@@ -86,12 +88,14 @@ TEST(Design, FindsTheBestDotSize) {
 // requirements conflict.
 TEST(Design, NamesTheFewestRequirementsThatConflict) {
   FixedDesignParameters const given = table1_given();
-  std::vector<Limit> const required{
-      {Bound::uncertainty_max, 1.0}, {Bound::view_width, 0.3}, {Bound::z_total, 2.4}, {Bound::displacement_max, 100}};
+  std::vector<Limit> const required{{required::uncertainty_max, 1.0},
+                                    {required::view_width, 0.3},
+                                    {required::z_total, 2.4},
+                                    {required::displacement_max, 100}};
   Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
   EXPECT_FALSE(answer.feasible());
   // the interval of Z_A ends at 5 m: the view alone is infeasible
-  EXPECT_THAT(answer.conflicts, UnorderedElementsAre(Bound::view_width));
+  EXPECT_THAT(answer.conflicts, UnorderedElementsAre(required::view_width));
   ASSERT_EQ(answer.relaxations.size(), 1u);
   // within 2.4 m the widest view has the smallest Z_D, 50 mm
   double const widest = 5.12e-3 * 2.35 * (2.4 - 0.105) / (0.105 * 2.4);
@@ -100,10 +104,11 @@ TEST(Design, NamesTheFewestRequirementsThatConflict) {
 
 TEST(Design, ReportsConflictingRequirements) {
   FixedDesignParameters const given = table1_given();
-  std::vector<Limit> const required{{Bound::uncertainty_max, 1.0}, {Bound::view_width, 0.2}, {Bound::z_total, 2.4}};
+  std::vector<Limit> const required{
+      {required::uncertainty_max, 1.0}, {required::view_width, 0.2}, {required::z_total, 2.4}};
   Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
   EXPECT_FALSE(answer.feasible());
-  EXPECT_THAT(answer.conflicts, UnorderedElementsAre(Bound::view_width, Bound::z_total));
+  EXPECT_THAT(answer.conflicts, UnorderedElementsAre(required::view_width, required::z_total));
   EXPECT_EQ(answer.relaxations.size(), 2u);
 }
 
@@ -112,11 +117,11 @@ TEST(Design, ReportsLimitThatExcludesAllDesigns) {
   FixedDesignParameters given = table1_given();
   given.camera.exposure_e = 1000 * given.camera.noise.full_well_e;
   Recommendation const answer =
-      recommend(Objective::resolution, {{Bound::uncertainty_max, 1.0}}, {free_distances(given)});
+      recommend(Objective::resolution, {{required::uncertainty_max, 1.0}}, {free_distances(given)});
   EXPECT_FALSE(answer.feasible());
   EXPECT_TRUE(answer.conflicts.empty());
   ASSERT_TRUE(answer.without_requirements);
-  EXPECT_EQ(answer.without_requirements->solution.worst, Bound::full_well);
+  EXPECT_EQ(answer.without_requirements->solution.worst, &below_full_well);
   EXPECT_GT(answer.without_requirements->solution.violation, std::log(10.0));
 }
 
@@ -124,13 +129,14 @@ TEST(Design, ReportsLimitThatExcludesAllDesigns) {
 // the larger one that either requires.
 TEST(Design, RelaxesRequirementsJointly) {
   FixedDesignParameters const given = table1_given();
-  std::vector<Limit> const required{{Bound::uncertainty_max, 1e-4}, {Bound::view_width, 0.3}, {Bound::z_total, 100}};
+  std::vector<Limit> const required{
+      {required::uncertainty_max, 1e-4}, {required::view_width, 0.3}, {required::z_total, 100}};
   Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
   EXPECT_FALSE(answer.feasible());
   EXPECT_TRUE(answer.relaxations.empty());
   ASSERT_EQ(answer.together.size(), 2u);
-  EXPECT_EQ(answer.together[0].bound, Bound::uncertainty_max);
-  EXPECT_EQ(answer.together[1].bound, Bound::view_width);
+  EXPECT_EQ(answer.together[0].bound, required::uncertainty_max);
+  EXPECT_EQ(answer.together[1].bound, required::view_width);
   double const factor = answer.together[0].value / 1e-4;
   EXPECT_GT(factor, 1);
   EXPECT_NEAR(0.3 / answer.together[1].value, factor, 1e-9);
@@ -159,14 +165,15 @@ DrawnQuestion drawn_question(FixedDesignParameters const& given, unsigned seed) 
   middle.dot_diameter = uniform(1.5, 3.5) * middle.pixel_at_dots();
   auto const loose = [&] { return std::exp(uniform(-0.4, 0.6)); };
   if (question.objective != Objective::gradient_min) {
-    question.required.push_back({Bound::gradient_min, middle.smallest_gradient() * loose()});
+    question.required.push_back({required::gradient_min, middle.smallest_gradient() * loose()});
   }
   if (question.objective != Objective::resolution) {
-    question.required.push_back({Bound::resolution, resolved_wavelength(middle) * loose()});
+    question.required.push_back({required::resolution, resolved_wavelength(middle) * loose()});
   }
-  question.required.push_back({Bound::view_width, 512 * middle.pixel_at_medium() / loose()});
-  question.required.push_back({Bound::z_total, middle.z_b() * loose()});
-  if (seed % 3 == 0) question.required.push_back({Bound::displacement_max, middle.largest_displacement_px() * loose()});
+  question.required.push_back({required::view_width, 512 * middle.pixel_at_medium() / loose()});
+  question.required.push_back({required::z_total, middle.z_b() * loose()});
+  if (seed % 3 == 0)
+    question.required.push_back({required::displacement_max, middle.largest_displacement_px() * loose()});
   for (double const f : {0.05, 0.085, 0.105, 0.2}) {
     for (double const stop : {5.6, 11.0, 22.0}) {
       DesignBranch branch;
@@ -192,7 +199,7 @@ double best_of_grid(DrawnQuestion const& question) {
     std::vector<Limit> limits = feasibility_limits(*branch.given);
     limits.insert(limits.end(), question.required.begin(), question.required.end());
     // the most expensive last
-    std::stable_partition(limits.begin(), limits.end(), [](Limit const& l) { return l.bound != Bound::resolution; });
+    std::stable_partition(limits.begin(), limits.end(), [](Limit const& l) { return l.bound != required::resolution; });
     for (int point = 0; point < distances * distances * sizes; ++point) {
       DesignPoint<double> const bench = design_point_at(
           branch, std::vector<double>{at(0, point / sizes / distances, distances),
@@ -236,15 +243,14 @@ struct ShippedQuestion {
   std::vector<DesignBranch> branches;
 
   explicit ShippedQuestion(std::vector<std::string> const& overrides) {
-    SetupDocument document = SetupDocument::from_file(shared_folder() + "/studies/cases/design.toml");
-    for (std::string const& assignment : overrides) document.override_key(assignment);
+    SetupDocument document = read_setup_document(shared_folder() + "/studies/cases/design.toml", overrides);
     SetupDocument const written = document.copy();
     question = *read_design_question(document);
     variants = design_variants(written, question, skipped);
     branches = design_branches(variants, question);
   }
   Recommendation recommended() const {
-    return recommend(question.requirements.objective, required_limits(question.requirements), branches);
+    return recommend(question.requirements.objective, question.requirements.limits, branches);
   }
 };
 
@@ -255,10 +261,10 @@ TEST(Design, FindsDesignThatMeetsStricterRequirement) {
     ShippedQuestion const asked({"requirements.objective=\"z_total\"",
                                  std::string("requirements.gradient_min_kg_m4=") + gradient,
                                  "inventory.focal_lengths_mm=[85]", "inventory.f_numbers=[22]"});
-    EXPECT_TRUE(solve_branches({asked.question.requirements.objective, required_limits(asked.question.requirements)},
-                               asked.branches)
-                    .front()
-                    .solution.feasible())
+    EXPECT_TRUE(
+        solve_branches({asked.question.requirements.objective, asked.question.requirements.limits}, asked.branches)
+            .front()
+            .solution.feasible())
         << gradient;
   }
 }
@@ -276,8 +282,9 @@ TEST(Design, NoStricterRequirementGains) {
     double const length = answer.outcomes.front().solution.objective;
     EXPECT_LE(length, longer * (1 + 1e-6)) << gradient;
     longer = length;
-    for (RequirementCost const& cost : answer.costs) EXPECT_GE(cost.change, -1e-4) << bound_name(cost.bound);
-    bool const more_is_stricter = answer.front_bound == Bound::view_width || answer.front_bound == Bound::view_height;
+    for (RequirementCost const& cost : answer.costs) EXPECT_GE(cost.change, -1e-4) << cost.bound->name;
+    bool const more_is_stricter =
+        answer.front_bound == required::view_width || answer.front_bound == required::view_height;
     for (std::size_t i = 1; i < answer.front.size(); ++i) {
       double const ratio = answer.front[i].objective / answer.front[i - 1].objective;
       EXPECT_LE(more_is_stricter ? 1 / ratio : ratio, 1 + 1e-6) << gradient << ' ' << answer.front[i].limit;
@@ -307,8 +314,8 @@ TEST(DesignBranches, DotsThatAreChosenDoNotRefuseACamera) {
 // Dots of 0.3 mm at M = 0.07 are 3.8 px of 5.5 um and 10.5 px of 2 um; 20 of the latter in 32 px would cover 1.7 times
 // the target.
 TEST(DesignBranches, SkipsACameraThatDoesNotGoWithTheSetup) {
-  SetupDocument document = SetupDocument::from_file(shared_folder() + "/studies/cases/design.toml");
-  document.override_key("target.dot_diameter_mm=0.3");
+  SetupDocument document =
+      read_setup_document(shared_folder() + "/studies/cases/design.toml", {"target.dot_diameter_mm=0.3"});
   DesignQuestion question;
   question.free = {interval(Choice::z_a, 0.3, 2)};
   auto const camera = [](double pitch_um) {

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "studies/design/sheet.h"
+#include "studies/design/sheet_text.h"
 #include "studies/figures/design_map.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
@@ -45,13 +47,32 @@ std::unique_ptr<MadeSheet> sheet_of(std::string const& text) {
 TEST(DesignSheet, HasEveryFormulaOfBosFromF1ToF27) {
   auto const made = sheet_of(sheet_setup);
   std::set<std::string> ids;
-  for (SheetRow const& row : made->sheet.rows) {
+  for (ResultRow const& row : made->sheet.rows) {
     ids.insert(row.id);
     EXPECT_TRUE(std::isfinite(row.value)) << row.key;
-    EXPECT_FALSE(row.formula.empty() || row.source.empty() || row.name.empty()) << row.key;
+    EXPECT_FALSE(row.formula.empty() || row.source.empty() || row.label.empty()) << row.key;
   }
   for (int number = 1; number <= 27; ++number)
     EXPECT_EQ(ids.count(std::string("F").append(std::to_string(number))), 1u) << number;
+}
+
+// A formula is one row: text, JSON and CSV follow from it.
+TEST(DesignSheet, IsTextJsonAndCsvOfTheSameRows) {
+  DesignSheet sheet = sheet_of(sheet_setup)->sheet;
+  sheet.rows.push_back({.id = "F99", .key = "new_mm", .symbol = "x", .label = "new", .value = 1.5, .unit = "mm"});
+  std::string const text = sheet_text(sheet), csv = rows_csv(sheet.rows);
+  nlohmann::ordered_json const json = sheet_json(sheet);
+  ASSERT_EQ(json["rows"].size(), sheet.rows.size());
+  for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+    ResultRow const& row = sheet.rows[i];
+    EXPECT_EQ(json["rows"][i]["value"], row.value) << row.key;
+    EXPECT_THAT(text, testing::HasSubstr("  " + row.id));
+    EXPECT_THAT(text, testing::HasSubstr(row.label));
+    EXPECT_THAT(csv, testing::HasSubstr('\n' + row.key + ',' + row.symbol + ','));
+  }
+  EXPECT_EQ(json["new_mm"], 1.5);
+  EXPECT_THAT(text, testing::ContainsRegex("F99 new, x +1.5 mm"));
+  EXPECT_THAT(csv, testing::HasSubstr("\nnew_mm,x,new,1.5,mm,\n"));
 }
 
 TEST(DesignSheet, IsTableOneToThePrintedDigits) {
@@ -113,7 +134,7 @@ TEST(DesignSheet, LightLimitsTheStop) {
               testing::HasSubstr("no f-number satisfies all limits: the largest, f/11, has a cone of 2.386 mm"));
   EXPECT_THAT(dim.row("f_number_floor").note, testing::HasSubstr(fmt::format("{:.3g} times the light", missing)));
   DesignSheet const automatic = sheet_of(sheet_setup)->sheet;
-  EXPECT_TRUE(std::none_of(automatic.rows.begin(), automatic.rows.end(), [](SheetRow const& row) {
+  EXPECT_TRUE(std::none_of(automatic.rows.begin(), automatic.rows.end(), [](ResultRow const& row) {
     return row.key == "f_number_light";
   })) << "exposure = \"auto\" takes what light it needs";
 }
@@ -125,7 +146,7 @@ TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
     return sheet_of(std::string(sheet_setup) + more)->sheet.row("random_error_px");
   };
   std::string const noise = "[camera.noise]\nfull_well_e = 10000\n";
-  SheetRow const within = row(noise);
+  ResultRow const within = row(noise);
   EXPECT_EQ(within.margin, Margin::green);
   EXPECT_THAT(within.note, testing::Not(testing::HasSubstr("beyond")));
   for (auto const& [more, what] :

@@ -18,7 +18,7 @@ class OneNode final : public FieldSource {
   FieldUnits const& units() const override { return units_; }
   std::string const& name() const override { return name_; }
   AxisAssignment const& reading() const override { return reading_; }
-  std::vector<std::string> notes() override { return {}; }
+  Warnings notes() override { return {}; }
   int significant_bits() const override { return 53; }
   void read_planes(int, int, std::span<double>) override {
     FAIL() << "the statistics must read rows, not whole planes";
@@ -78,7 +78,7 @@ class LinearVelocity final : public FieldSource {
   FieldUnits const& units() const override { return units_; }
   std::string const& name() const override { return name_; }
   AxisAssignment const& reading() const override { return reading_; }
-  std::vector<std::string> notes() override { return {}; }
+  Warnings notes() override { return {}; }
   int significant_bits() const override { return 53; }
   void read_planes(int plane, int, std::span<double> out) override { read_rows(plane, 0, grid_.nodes[1], out); }
   void read_rows(int, int first_row, int, std::span<double> out) override {

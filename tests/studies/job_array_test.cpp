@@ -9,6 +9,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "tests/support/expect_error.h"
+
 namespace gladstone {
 namespace {
 
@@ -45,12 +47,9 @@ TEST(JobArray, TakesOneCaseATaskUnlessTheClusterAllowsFewerTasks) {
 TEST(JobArray, TooManyTasksAreRefusedWithWhatWouldFit) {
   SlurmOptions options;
   options.cases_per_task = 2;
-  try {
-    make_job_array("g", "/run", first_cases(2003), options, most);
-    FAIL() << "1002 tasks in an array of 1001";
-  } catch (std::invalid_argument const& error) {
-    EXPECT_THAT(error.what(), HasSubstr("use --cases-per-task 3 or more"));
-  }
+  EXPECT_THAT([&] { make_job_array("g", "/run", first_cases(2003), options, most); },
+              ThrowsDataError(ErrorCode::arguments, "--cases-per-task", HasSubstr("use 3 or more")))
+      << "1002 tasks in an array of 1001";
 }
 
 TEST(JobArray, GivenOptionsGoToSbatchAsTheyAre) {

@@ -256,7 +256,7 @@ TEST_F(Runs, DeeplyNestedTextIsRefused) {
 TEST_F(Runs, AResultIsWholeOrNone) {
   auto const cases = planned();
   CaseResult written = result_of(cases[2], 0.1 + 0.2);
-  written.warnings = {"a \"quoted\" warning"};
+  written.warnings = {{WarningCode::low_accuracy, "truth", "a \"quoted\" warning"}};
   write_result(in("run"), written);
   auto const read = read_result(in("run"), 2, cases[2].line_hash);
   ASSERT_TRUE(read.has_value());
@@ -268,7 +268,7 @@ TEST_F(Runs, AResultIsWholeOrNone) {
   EXPECT_EQ(head->warnings, written.warnings);
   EXPECT_TRUE(head->measures.empty());
 
-  written.warnings = {"one that quotes \",\"measures\":{ itself"};
+  written.warnings = {{WarningCode::other, "", "one that quotes \",\"measures\":{ itself"}};
   std::string const text = result_text(written);
   ASSERT_TRUE(parse_result(text, "0.json").has_value());
   EXPECT_EQ(parse_result(text, "0.json", ResultPart::head).value().warnings, written.warnings);

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "render/base/error.h"
-#include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
+#include "tests/scene/planned_scene.h"
 #include "tests/support/expect_error.h"
 
 namespace gladstone {
@@ -37,7 +37,7 @@ Setup plenoptic_setup(LensletLayout layout) {
 
 /// Plenoptic image of particles of equal light at the given positions.
 Image<double> picture(Setup const& setup, std::vector<Vec3d> const& places) {
-  Scene scene = build_scene(setup);
+  PlannedScene scene(build_scene(setup));
   scene.particles.resize(places.size());
   for (int pulse = 0; pulse < 2; ++pulse) {
     scene.particles.place[pulse] = places;
@@ -45,10 +45,10 @@ Image<double> picture(Setup const& setup, std::vector<Vec3d> const& places) {
   }
   scene.particles.diameter.assign(places.size(), 1e-6);
   scene.photon_unit = 1;
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  scene.rays_per_dot = 2048;
+  plan_step(scene);
+  scene.plan.rays = 2048;
   return RaysRenderer()
-      .render_particles(scene, scene.particles, ParticleLight::equal, RenderImages::yes)
+      .render_particles(scene, scene.plan, scene.particles, ParticleLight::equal, RenderImages::yes)
       .light.reference;
 }
 

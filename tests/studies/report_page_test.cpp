@@ -23,17 +23,24 @@ TEST(Base64, HasTheVectorsOfItsStandard) {
   EXPECT_EQ(base64(std::string_view("\xff\x00", 2)), "/wA=");
 }
 
+Figure titled_figure(std::string title) {
+  Figure figure;
+  figure.add_title(std::move(title));
+  return figure;
+}
+
 ReportPage hostile_page() {
   std::string const hostile = "</script><script>alert(\"1\")</script> & | `x`";
   ReportPage page;
   page.title = hostile;
   page.question = hostile;
   page.findings = {hostile};
-  page.sections = {{hostile,
-                    {Paragraph{hostile}, TextList{{hostile}}, Verbatim{hostile, hostile},
-                     TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true},
-                     Chart{"curves", hostile, hostile}, FramePictures{hostile, hostile, "a", "b", "one", "two"},
-                     Picture{hostile, hostile, "three"}, FigureFile{hostile, hostile}}}};
+  page.sections = {
+      {hostile,
+       {Paragraph{hostile}, TextList{{hostile}}, Verbatim{hostile, hostile},
+        TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true}, Chart{"curves", hostile, hostile},
+        FramePictures{hostile, hostile, "a", "b", "one", "two"},
+        Chart{"figure", hostile, hostile, {{hostile, titled_figure(hostile)}}}, FigureFile{hostile, hostile}}}};
   page.data = {{"text", hostile}};
   return page;
 }
@@ -51,9 +58,10 @@ TEST(ReportPage, HoldsAllThatItNeeds) {
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   EXPECT_THAT(html, HasSubstr("d3js.org v5"));
   EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64," + base64("one")));
-  EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64," + base64("three")));
+  EXPECT_THAT(html, HasSubstr("data-chart=\"figure\" data-figures=\"0\""));
+  EXPECT_THAT(html, HasSubstr("\"charts\":[{\"chart\":\"figure\",\"figures\":[{\"figure\":{\"height\":520"));
   EXPECT_THAT(html, HasSubstr("Copyright"));
-  EXPECT_THAT(html, HasSubstr("{\"text\":\"\\u003c/script>\\u003cscript>"));
+  EXPECT_THAT(html, HasSubstr("\"text\":\"\\u003c/script>\\u003cscript>"));
 }
 
 TEST(ReportPage, SaysThatANumberIsUnknown) {

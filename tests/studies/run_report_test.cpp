@@ -1,4 +1,3 @@
-
 #include "studies/report/report.h"
 #include "studies/sweep/case_runner.h"
 #include "studies/sweep/collect.h"

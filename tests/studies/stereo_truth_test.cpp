@@ -58,8 +58,8 @@ TEST(StereoAlignment, OfAnUnfinishedIterationIsNotUsed) {
     return measurement.is_aligned();
   };
   auto const warns = [&] {
-    for (std::string const& warning : find_stereo_warnings(measurement))
-      if (warning.find("has not converged") != std::string::npos) return true;
+    for (Warning const& warning : find_stereo_warnings(measurement))
+      if (warning.code == WarningCode::low_accuracy) return true;
     return false;
   };
   EXPECT_TRUE(is_aligned({4.0, 0.3, 0.004}));

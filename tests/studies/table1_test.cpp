@@ -15,12 +15,10 @@ namespace {
 // table1.toml.
 TEST(Table1, IsAsGoodAsItSays) {
   CaseSetup const loaded = load_case_setup(shared_folder() + "/studies/cases/table1.toml", {});
-  Scene scene = build_scene(loaded.setup);
-  scene = with_chosen_step(std::move(scene));
-  RayBudget const plan = choose_ray_budget(scene);
+  Scene const scene = build_scene(loaded.setup);
+  RenderPlan const plan = plan_rendering(scene);
   ASSERT_EQ(plan.rays, 1024u);
-  scene = with_rays(std::move(scene), plan);
-  TableError const error = measure_table_error(focused_dots(scene).value());
+  TableError const error = measure_table_error(focused_dots(scene, plan).value());
   EXPECT_LT(error.truth_px, 1e-4);
   EXPECT_LT(error.truth_resolution_px, 1e-4);
   EXPECT_LT(error.image_levels, 0.5);

@@ -8,6 +8,7 @@
 #include "studies/design/predicted_blur.h"
 #include "studies/design/sheet.h"
 #include "studies/design/verification_text.h"
+#include "tests/studies/support/requirement_bounds.h"
 #include "tests/studies/support/table1_design.h"
 
 namespace gladstone {
@@ -83,7 +84,7 @@ VerifiedQuantity const& quantity(VerifiedDesign const& verified, std::string con
 TEST(Verification, ExplainsNothingIfSimulationAgrees) {
   FixedDesignParameters const given = table1_given();
   VerifiedDesign verified = as_predicted(given);
-  compare_with_formulas(verified, {{Bound::resolution, 1.0}, {Bound::uncertainty_max, 1.0}});
+  compare_with_formulas(verified, {{required::resolution, 1.0}, {required::uncertainty_max, 1.0}});
   ASSERT_EQ(verified.quantities.size(), 4u);
   for (VerifiedQuantity const& one : verified.quantities) {
     EXPECT_TRUE(one.agrees()) << one.key;
@@ -102,7 +103,7 @@ TEST(Verification, ReportsCauseOfDisagreement) {
   verified.simulated.waves[0].measured.value = 0.85;  // the transfer of the window then deviates most
   compare_with_formulas(verified, {});
   EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("refraction: 0.004 px, which no formula includes"));
-  EXPECT_THAT(quantity(verified, "resolution_mm").why, testing::StartsWith("window: transmits "));
+  EXPECT_THAT(quantity(verified, "resolution_mm").why, testing::StartsWith("window: amplitude transfer of "));
   EXPECT_EQ(quantity(verified, "random_px").why, "");
   verified = as_predicted(given);
   verified.simulated.bias_px.value = 0.014;
@@ -139,14 +140,14 @@ TEST(Verification, KeepsARequirementWithinTwoStandardErrors) {
   double const wavelength = resolved_wavelength(table1_design(given));  // with a standard error of 0.1 %
   for (auto const& [required, kept] : {std::pair{0.9985 * wavelength, true}, {0.997 * wavelength, false}}) {
     VerifiedDesign verified = as_predicted(given);
-    compare_with_formulas(verified, {{Bound::resolution, required}});
+    compare_with_formulas(verified, {{required::resolution, required}});
     EXPECT_EQ(verified.kept(), kept);
   }
   // the view must not be smaller
   double const view = 512 * table1_design(given).pixel_at_medium();
   for (auto const& [required, kept] : {std::pair{0.99 * view, true}, {1.01 * view, false}}) {
     VerifiedDesign verified = as_predicted(given);
-    compare_with_formulas(verified, {{Bound::view_width, required}});
+    compare_with_formulas(verified, {{required::view_width, required}});
     EXPECT_EQ(verified.kept(), kept);
   }
 }
@@ -155,7 +156,7 @@ TEST(Verification, ReportsRequirementsMissedByAllDesigns) {
   FixedDesignParameters const given = table1_given();
   Verification verification;
   verification.benches.push_back(as_predicted(given));
-  compare_with_formulas(verification.benches[0], {{Bound::resolution, 1e-3}});
+  compare_with_formulas(verification.benches[0], {{required::resolution, 1e-3}});
   EXPECT_TRUE(verification.any());
   std::string const text = verification_text(verification, {});
   EXPECT_THAT(text, HasSubstr("does not meet requirements.resolution_mm = 1: "));

@@ -51,13 +51,14 @@ inline auto ThrowsDataError(ErrorCode code, std::string place) {
                      testing::Property("place", &Error::place, testing::EndsWith(std::move(place)))));
 }
 
-/// Matches a function that throws a DataError whose message also matches: where the test is about a number or a remedy.
+/// Matches a function that throws a DataError and whose message also matches, for tests about a number or a remedy in
+/// the message.
 template <class Message>
 auto ThrowsDataError(ErrorCode code, std::string place, Message const& message) {
   return testing::AllOf(ThrowsDataError(code, std::move(place)), testing::ThrowsMessage<DataError>(message));
 }
 
-/// Matches a function that throws an OutputError. @param path  end of the path
+/// Matches a function that throws an OutputError. @param path end of the output file's path
 inline auto ThrowsOutputError(std::string path) {
   return testing::Throws<OutputError>(testing::Property("place", &Error::place, testing::EndsWith(std::move(path))));
 }

@@ -8,12 +8,13 @@
 
 namespace gladstone {
 
-/// Fixture with a new folder for each test.
+/// Fixture that creates a new folder for each test.
 class FolderFixture : public testing::Test {
  protected:
   void SetUp() override {
     auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) / info->test_suite_name() / info->name();
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("gladstone_") + info->test_suite_name() + '_' + info->name());
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

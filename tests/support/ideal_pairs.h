@@ -4,8 +4,9 @@
 
 namespace gladstone::test {
 
-/// PIV setup with 0.05 particles per pixel in a sheet of 1 mm, imaged by a lens of 105 mm at f/16 from 750 mm to pixels
-/// of 5 um: particle images 3.3 px wide (e^-2), 12 bits, no medium. The sheet is a little larger than the view.
+/// Returns a PIV setup with 0.05 particles per pixel in a sheet of 1 mm, imaged by a lens of 105 mm at f/16 from 750 mm
+/// to pixels of 5 um: particle images 3.3 px wide (e^-2), 12 bits, no medium. The sheet is slightly larger than the
+/// field of view.
 inline Setup pair_setup(ParticleScattering scattering, int columns, int rows) {
   Setup setup;
   setup.camera.columns = columns;

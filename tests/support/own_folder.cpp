@@ -24,7 +24,7 @@ bool all_may_enter(fs::path folder) {
 class OwnFolder final : public ::testing::Environment {
  public:
   void SetUp() override {
-    // As root, some tests temporarily switch to another user, who cannot enter root's home directory.
+    // If run by root, some tests temporarily switch to another user, who cannot enter root's home directory.
     bool const here = ::geteuid() != 0 || all_may_enter(::testing::TempDir());
     folder_ = here ? ::testing::TempDir() + "XXXXXX" : (fs::temp_directory_path() / "gladstone-test-XXXXXX").string();
     if (::mkdtemp(folder_.data()) == nullptr) throw std::runtime_error(folder_ + ": cannot be created");

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/correlation/correlation_settings.h"
 #include "render/base/error.h"
 #include "render/scene/setup.h"
 #include "render/setup/setup_state.h"
+#include "studies/case/correlation_setup.h"
 #include "studies/case/light_exposure.h"
 #include "studies/design/question.h"
 

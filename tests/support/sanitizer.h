@@ -2,8 +2,8 @@
 
 namespace gladstone::test {
 
-/// True in a build with AddressSanitizer, which keeps freed memory for a while: resident memory then tells nothing of
-/// leaks, for which the sanitizer has a search of its own.
+/// True in a build with AddressSanitizer, which retains freed memory for a while. Resident memory is then no measure of
+/// leaks, which the sanitizer finds itself.
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool address_sanitizer = true;
 #elif defined(__has_feature)

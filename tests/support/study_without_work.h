@@ -24,7 +24,7 @@ namespace gladstone::test {
 struct WorkCost {
   double seconds = 0;
   double bytes = 0;  ///< growth of the resident memory from the start of the work to its maximum
-  int status = 0;    ///< of the process, as waitpid() returns it; 0: the work was completed
+  int status = 0;    ///< status of the process, as returned by waitpid(); 0: the work was completed
 };
 
 /// Runs work on one thread of a new process, so that memory used before does not count.
@@ -85,7 +85,7 @@ class StudyWithoutWork {
 
   /// Computes the missing cases, as a worker of `gladstone sweep run` does.
   /// @param start     fraction of the cases at which to start
-  /// @param computing called when a case has been claimed, before its result exists
+  /// @param computing  called when a case has been claimed, before its result exists
   /// @param computed  called when its result has been written, while it is still claimed
   void run(double start = 0, std::function<void(std::size_t index)> const& computing = {},
            std::function<void(std::size_t index)> const& computed = {}) const {

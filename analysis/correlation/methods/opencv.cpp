@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t windows_per_chunk = 32;  // even, since windows are transformed in pairs
 
-/// Correlates windows two at a time, with its own scratch memory.
+/// Correlation of windows in pairs, with scratch memory for one pair.
 class PairwiseCorrelation {
  public:
   PairwiseCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y)
@@ -59,7 +59,7 @@ class PairwiseCorrelation {
     }
     double const mean_reference = sums.reference / sums.weight, mean_flow = sums.flow / sums.weight;
     int const core_begin = grid_.window_px / 2, core_end = core_begin + grid_.window_px;
-    double energy[2] = {}, core_energy[2] = {};  // of the reference and of the flow
+    double energy[2] = {}, core_energy[2] = {};  // energies of frame A and of frame B
     std::fill(window_.begin(), window_.end(), 0.0);
     visit_window_pixels(pair_, x_, column, y_, row, [&](int i, int j, double weight, std::size_t at) {
       double const value[2] = {weight * (pair_.reference[at] - mean_reference), weight * (pair_.flow[at] - mean_flow)};
@@ -78,8 +78,8 @@ class PairwiseCorrelation {
     return scale;
   }
 
-  /// Writes the cross spectra of both windows, C0 + i C1, to window_. A missing window has scale 0 and a finite
-  /// spectrum from an earlier call.
+  /// Writes the cross spectra of both windows, C0 + i C1, to window_. If a window of the pair is missing, its scale is
+  /// 0 and its spectrum is a finite one from an earlier call.
   void join(double const* scale) {
     int const size = size_;
     double const scale0 = scale[0], scale1 = scale[1];
@@ -138,9 +138,9 @@ class PairwiseCorrelation {
 
 }  // namespace
 
-/// Computes the planes of scc by OpenCV's transforms in double precision, two windows at a time. The transform length
-/// is twice the window or the next larger length available to scc, so that Gaussian windows wrap around at their rim in
-/// the same way. Slow; used as the reference for the faster methods.
+/// Computes the planes of method "scc" by OpenCV's transforms in double precision, two windows at a time. The transform
+/// length is twice the window or the next larger length that "scc" can use, so that Gaussian windows wrap around at
+/// their rim in the same way. Slow; used as the reference for the faster methods.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job) {
   InterrogationGrid const& grid = job.grid;
   int const radius = job.search_radius_px;

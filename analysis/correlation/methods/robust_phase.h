@@ -13,7 +13,8 @@ constexpr double robust_phase_diameter_px = 2.8;
 /// correlation of two Gaussian particle images of diameter d.
 std::vector<float> particle_spectrum(int size);
 
-/// Computes the plane of rpc. If all phases agree, it is a Gaussian peak of height 1 with a variance of diameter^2/8.
+/// Computes the plane of method "rpc". If all phases agree, the plane is a Gaussian peak of height 1 with a variance of
+/// diameter^2/8.
 void make_robust_phase_plane(LaneCorrelation& work, LanePlane& plane);
 
 }  // namespace gladstone

@@ -7,11 +7,12 @@ namespace {
 void make_filtered_plane(LaneCorrelation& work, LanePlane& plane) {
   work.load(WindowTerm::frames);
   FloatLanes const scale = work.windows().scale(work.size());
-  FloatLanes whole{};  // height of the plane if all phases agreed
+  FloatLanes whole{};  // height that the plane would have if all phases agreed
   work.correlate(
       scale,
       [&](ComplexLanes* spectrum, int kx, int size) {
-        float const times = kx == 0 || kx == size / 2 ? 1.0f : 2.0f;  // the other half of the spectrum is mirrored
+        // columns between the first and the last one count twice, since the other half of the spectrum mirrors them
+        float const times = kx == 0 || kx == size / 2 ? 1.0f : 2.0f;
         for (int ky = 0; ky < size; ++ky) {
           ComplexLanes& c = spectrum[ky];
           FloatLanes const root = root_lanes(root_lanes(c.re * c.re + c.im * c.im)) + 1e-30f;

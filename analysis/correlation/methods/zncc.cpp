@@ -9,7 +9,7 @@ void make_normalised_plane(LaneCorrelation& work, LanePlane& plane) {
   work.load(WindowTerm::frames);
   FloatLanes const scale = work.windows().scale(work.size());
   float const size = static_cast<float>(work.size());
-  // Both energies relative to the same total as `scale`: at shift 0 their product is about 1.
+  // Normalise both energies by the total that `scale` contains, so that their product is about 1 at shift 0.
   FloatLanes const energy = 1.0f / larger_lanes(scale * size * size, all_lanes(1e-30f));
   work.correlate(scale, {}, plane);
   FloatLanes const part = 1.0f / (energy * size * size);
@@ -19,7 +19,7 @@ void make_normalised_plane(LaneCorrelation& work, LanePlane& plane) {
   work.correlate(part, {}, flow);
   for (int dy = -plane.reach(); dy <= plane.reach(); ++dy)
     for (int dx = -plane.reach(); dx <= plane.reach(); ++dx) {
-      // Rounding may reduce the energy of a dark corner to zero or below.
+      // Rounding may make the energy of a dark corner of the window zero or negative.
       FloatLanes const least = all_lanes(1e-3f);
       plane(dx, dy) /= root_lanes(larger_lanes(reference(dx, dy), least) * larger_lanes(flow(dx, dy), least));
     }

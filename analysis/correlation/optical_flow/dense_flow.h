@@ -21,7 +21,7 @@ struct GreyImage {
   }
 };
 
-/// Displacement at the centre of every pixel [px].
+/// Displacement field with one vector at the centre of every pixel [px].
 struct DenseFlow {
   int columns = 0, rows = 0;
   std::vector<float> u, v;
@@ -30,7 +30,7 @@ struct DenseFlow {
   DenseFlow(int width, int height)
       : columns(width), rows(height), u(static_cast<std::size_t>(width) * height), v(u.size()) {}
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * columns + x; }
-  /// Interpolates bilinearly between pixels; positions outside are clamped to the border.
+  /// Interpolates the displacement bilinearly between pixels; positions outside the image are clamped to its border.
   Vec2d at(Vec2d position) const;
   /// Returns the flow for an image of twice the resolution: interpolated bilinearly, and doubled.
   DenseFlow finer(int width, int height) const;
@@ -45,7 +45,7 @@ std::vector<GreyImage> build_pyramid(GreyImage finest);
 GreyImage normalised_frame(GreyImage frame);
 
 /// Estimates the displacement of every pixel, at the mid-position as in a correlation.
-/// @param reference, flow  frames without deformation; unknown pixels contain the middle of the grey levels
+/// @param reference,  flow  frames without deformation; unknown pixels contain the middle of the grey levels
 using EstimateFlow = DenseFlow (*)(GreyImage const& reference, GreyImage const& flow);
 
 /// Optical flow by Horn & Schunck, Artif. Intell. 17 (1981) 185, on normalised frames, from coarse to fine. Each level
@@ -53,21 +53,21 @@ using EstimateFlow = DenseFlow (*)(GreyImage const& reference, GreyImage const& 
 /// smooth correction that explains the residual difference. Applied to background oriented schlieren by Atcheson,
 /// Heidrich & Ihrke, Exp. Fluids 46 (2009) 467.
 DenseFlow horn_schunck_flow(GreyImage const& reference, GreyImage const& flow);
-/// Grey levels that are mapped to 0 and 255.
+/// Range of grey levels whose limits are mapped to 0 and 255.
 struct GreyRange {
   float low = 0.0f, high = 0.0f;
 };
-/// One in this many pixels may be above the level mapped to 255.
+/// Number of pixels of which one may exceed the level mapped to 255.
 constexpr std::size_t brightest_pixels = 10000;
 /// Returns the range from the darkest pixel of both frames to the level exceeded by one in brightest_pixels of them, so
-/// that a few hot pixels do not reduce the grey-level resolution of the others.
+/// that a few hot pixels do not reduce the grey-level resolution of the other pixels.
 GreyRange joint_range(GreyImage const& reference, GreyImage const& flow);
 
 /// Dense inverse search of Kroeger, Timofte, Dai & Van Gool, ECCV 2016, in OpenCV's implementation (cv::DISOpticalFlow)
-/// with its "medium" preset, the finest of three: patches of 8 px, 3 px apart, without their mean, 25 steps, down to
-/// half of the resolution, five iterations of variational refinement.
-/// Both frames are converted to 8 bits by the same joint_range(). The result is half the difference between the forward
-/// and the backward flow, so that exchanging the frames reverses its sign. It is computed in one thread, and hence
+/// with "medium", the finest of its three presets: patches of 8 px at distances of 3 px, without their mean grey level,
+/// 25 descent steps, a finest pyramid level of half the resolution, and five iterations of variational refinement. Both
+/// frames are converted to 8 bits by the same joint_range(). The result is half the difference between the forward and
+/// the backward flow, so that exchanging the frames reverses its sign. It is computed in one thread, and hence
 /// independent of the number of threads.
 /// @throws DataError if the frames are too small for the method
 DenseFlow dense_inverse_search(GreyImage const& reference, GreyImage const& flow);

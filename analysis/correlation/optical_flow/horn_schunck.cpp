@@ -1,4 +1,3 @@
-
 #include "analysis/correlation/optical_flow/dense_flow.h"
 #include "render/base/parallel.h"
 
@@ -6,8 +5,8 @@ namespace gladstone {
 namespace {
 
 /// Weight of the squared gradients of the displacement relative to the squared grey-level residual, for grey levels of
-/// 1 rms. At 5 % noise the errors are similar to those of the default passes; they are twice as large for a weight of 2
-/// and half as large for 32 (docs/estimators.md).
+/// 1 rms. With this weight, the errors at 5 % noise are similar to those of a correlation with the default passes; they
+/// are twice as large for a weight of 2 and half as large for a weight of 32 (docs/estimators.md).
 constexpr float smoothness = 8.0f;
 constexpr int deformations = 4;  ///< image deformations per level; doubling the number has no effect
 constexpr int sweeps = 40;       ///< relaxation sweeps per deformation
@@ -15,7 +14,8 @@ constexpr int sweeps = 40;       ///< relaxation sweeps per deformation
 constexpr float relaxation = 1.8f;
 constexpr std::size_t rows_per_chunk = 16;
 
-/// Linearised residual after a deformation: gx du + gy dv + difference = 0.
+/// Coefficients of the linear equation gx du + gy dv + difference = 0 that the correction (du, dv) satisfies at each
+/// pixel after a deformation.
 struct Remainder {
   std::vector<float> gx, gy, difference;
 };
@@ -47,7 +47,7 @@ Remainder remainder_of(BsplineImage<float> const& a, BsplineImage<float> const& 
 }
 
 /// Relaxes the pixels of one colour of the chessboard (0 or 1). All of their neighbours are of the other colour, so
-/// that the result does not depend on the order.
+/// that the result does not depend on the order of the pixels.
 void sweep(Remainder const& rest, DenseFlow const& from, int colour, DenseFlow& d) {
   parallel_chunks(static_cast<std::size_t>(d.rows), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j)

@@ -10,8 +10,8 @@
 namespace gladstone {
 namespace {
 
-/// RAII guard that restricts OpenCV to one thread: its patches start from neighbours in the same strip of the image,
-/// and the number of strips is the number of threads.
+/// RAII guard that restricts OpenCV to one thread, so that the result does not depend on the number of threads: OpenCV
+/// divides the image into one strip per thread, and starts the search of a patch from its neighbours in the same strip.
 class OneThread {
  public:
   OneThread() : turn_(one_at_a_time()), before_(cv::getNumThreads()) { cv::setNumThreads(1); }

@@ -11,9 +11,8 @@
 namespace gladstone {
 namespace {
 
-/// Returns a warning listing the settings that differ from their defaults but have no effect on optical flow; empty:
-/// none.
-std::string unheeded(CorrelationSettings const& settings) {
+/// Returns a warning listing the settings that differ from their defaults but have no effect on optical flow.
+std::optional<Warning> unheeded(CorrelationSettings const& settings) {
   CorrelationSettings const usual;
   std::vector<char const*> keys;
   auto const note = [&](char const* key, bool as_usual) {
@@ -32,10 +31,10 @@ std::string unheeded(CorrelationSettings const& settings) {
   note("least_correlation", settings.least_correlation == usual.least_correlation);
   note("replace", settings.replace == usual.replace);
   if (keys.empty()) return {};
-  return fmt::format(
-      "correlate.method = \"{}\" ignores correlate.{} (optical flow has no correlation peaks, and its vectors are not "
-      "validated); remove these settings",
-      settings.method, fmt::join(keys, ", correlate."));
+  return Warning{WarningCode::ignored, "correlate.method",
+                 fmt::format("\"{}\" ignores correlate.{} (optical flow has no correlation peaks, and its vectors are "
+                             "not validated); remove these settings",
+                             settings.method, fmt::join(keys, ", correlate."))};
 }
 
 class OpticalFlowCorrelator final : public Correlator {
@@ -72,7 +71,7 @@ class OpticalFlowCorrelator final : public Correlator {
         reject_vector(VectorStatus::invalid, VectorReason::beyond_limit);
     }
     DisplacementField field = displacement_field(grid, vectors);
-    if (std::string warning = unheeded(settings_); !warning.empty()) field.warnings.push_back(std::move(warning));
+    if (auto const warning = unheeded(settings_)) field.warnings.push_back(*warning);
     return field;
   }
 
@@ -98,7 +97,7 @@ class OpticalFlowCorrelator final : public Correlator {
     return squares / pixels - mean * mean > std::pow(smallest_contrast * pair.contrast, 2);
   }
 
-  /// Returns the known fraction of the pixels of a nominal window.
+  /// Returns the fraction of the pixels of a nominal window that are known in both frames.
   static double valid_pixel_fraction(ImagePair const& pair, InterrogationGrid const& grid, std::size_t vector) {
     if (pair.available.empty()) return 1.0;
     auto const [x, y] = first_pixel(grid, vector);

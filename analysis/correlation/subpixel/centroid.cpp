@@ -11,7 +11,7 @@ PeakFit fit_centroid(PeakPatch const& patch) {
     right = std::max(right, 0.0);
     return (right - left) / (left + v[1][1] + right);
   };
-  // A centre of mass has no height; use that of the Gaussian fit.
+  // A centre of mass yields no peak height; use the height of the Gaussian fit.
   return {centre_of_mass(v[1][0], v[1][2]), centre_of_mass(v[0][1], v[2][1]), fit_gauss3(patch).log_rise};
 }
 

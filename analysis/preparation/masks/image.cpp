@@ -3,9 +3,7 @@
 
 namespace gladstone {
 
-FrameChange read_image_mask(SetupTable& table, FramePreparation& preparation) {
-  std::string const file = table.required_path("file");
-  if (!file.empty()) preparation.files.push_back(file);
+FrameChange make_image_mask(std::string const& file) {
   return [file](PreparedFrames& frames) {
     Image<double> const picture = read_frame_sized_image(file, frames.known);
     for (std::size_t i = 0; i < picture.size(); ++i)

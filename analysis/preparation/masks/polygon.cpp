@@ -20,17 +20,7 @@ bool is_inside(std::vector<Vec2d> const& corners, Vec2d p) {
 
 }  // namespace
 
-FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
-  constexpr std::size_t fewest = 3, most = 10000;
-  std::vector<double> const x = table.number_list("x_px", {}, fewest, most);
-  std::vector<double> const y = table.number_list("y_px", {}, fewest, most);
-  for (char const* key : {"x_px", "y_px"})
-    if (!table.has(key))
-      table.problem(key, "is missing (a polygon requires corners); give three or more numbers", ErrorCode::missing_key);
-  if (!x.empty() && !y.empty() && x.size() != y.size())
-    table.problem("y_px", "has another number of values than x_px (each corner has both coordinates); give as many");
-  std::vector<Vec2d> corners;
-  for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) corners.push_back({x[k], y[k]});
+FrameChange make_polygon_mask(std::vector<Vec2d> const& corners) {
   return [corners](PreparedFrames& frames) {
     int const columns = frames.known.columns(), rows = frames.known.rows();
     bool any = false;

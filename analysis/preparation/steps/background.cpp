@@ -14,13 +14,14 @@ namespace {
 void subtract_background(Image<double> const& background, Image<double>& frame) {
   if (background.columns() != frame.columns() || background.rows() != frame.rows())
     throw DataError(ErrorCode::wrong_shape, KeyPath{"correlate.preprocess"},
-                    fmt::format("the background is {} x {} px, but the frames are {} x {} px (it is subtracted pixel "
-                                "by pixel); correlate frames of one size",
+                    fmt::format("the background is {} x {} px, but the frames are {} x {} px (the background is "
+                                "subtracted pixel by pixel); correlate frames of one size",
                                 background.columns(), background.rows(), frame.columns(), frame.rows()));
   for (std::size_t i = 0; i < frame.size(); ++i) frame.data()[i] -= background.data()[i];
 }
 
-/// Backgrounds of listed files, computed for the first pair of frames and retained for the others.
+/// Backgrounds computed from the files listed in the setup, when the first pair of frames is prepared; later pairs
+/// reuse them.
 class ListedBackground {
  public:
   ListedBackground(std::string statistic, std::vector<std::string> reference, std::vector<std::string> flow)
@@ -52,30 +53,15 @@ class ListedBackground {
 
 }  // namespace
 
-FrameChange read_background(SetupTable& table, FramePreparation& preparation) {
-  std::string const statistic = table.word("subtract", "minimum", background_statistics());
-  std::vector<SetupTable> frames = table.tables("frame");
-  if (frames.empty() && preparation.set == PreparedSet::sequence) {
-    auto const own = std::make_shared<SequenceBackground>();
-    own->statistic = statistic;
-    preparation.backgrounds.push_back(own);
-    return [own](PreparedFrames& prepared) {
-      subtract_background(own->reference, prepared.reference);
-      subtract_background(own->flow, prepared.flow);
-    };
-  }
-  if (frames.empty())
-    table.problem("frame",
-                  "is missing (a background requires a sequence); give frame = [{ reference = \"a.tif\", flow = "
-                  "\"b.tif\" }, ...]",
-                  ErrorCode::missing_key);
-  std::vector<std::string> reference, flow;
-  for (SetupTable& pair : frames) {
-    reference.push_back(pair.required_path("reference"));
-    flow.push_back(pair.required_path("flow"));
-  }
-  for (auto const* files : {&reference, &flow})
-    preparation.files.insert(preparation.files.end(), files->begin(), files->end());
+FrameChange make_background_subtraction(std::shared_ptr<SequenceBackground const> const& background) {
+  return [background](PreparedFrames& prepared) {
+    subtract_background(background->reference, prepared.reference);
+    subtract_background(background->flow, prepared.flow);
+  };
+}
+
+FrameChange make_background_subtraction(std::string const& statistic, std::vector<std::string> const& reference,
+                                        std::vector<std::string> const& flow) {
   auto const listed = std::make_shared<ListedBackground>(statistic, reference, flow);
   return [listed](PreparedFrames& prepared) { listed->subtract_from(prepared); };
 }

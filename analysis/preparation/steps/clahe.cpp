@@ -6,9 +6,7 @@
 
 namespace gladstone {
 
-FrameChange read_clahe(SetupTable& table, FramePreparation&) {
-  int const tile_px = static_cast<int>(table.integer("tile_px", 64, 4, 4096));
-  double const clip_limit = table.number("clip_limit", 2.0, Range::at_least(1.0, 1e6));
+FrameChange make_clahe(int tile_px, double clip_limit) {
   return [tile_px, clip_limit](PreparedFrames& frames) {
     for_both<cv::Mat1d>(frames, [&](cv::Mat1d& levels, cv::Mat1d const& known) {
       double low = 0.0, high = 0.0;

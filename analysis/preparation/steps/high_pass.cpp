@@ -5,8 +5,7 @@
 
 namespace gladstone {
 
-FrameChange read_high_pass(SetupTable& table, FramePreparation&) {
-  double const sigma_px = table.number("sigma_px", 10.0, Range::positive(512.0));
+FrameChange make_high_pass(double sigma_px) {
   return [sigma_px](PreparedFrames& frames) {
     // Average over valid pixels only: divide the filtered levels by the filtered weights.
     cv::Mat1d weight;

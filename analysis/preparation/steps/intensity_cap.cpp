@@ -6,8 +6,7 @@
 
 namespace gladstone {
 
-FrameChange read_intensity_cap(SetupTable& table, FramePreparation&) {
-  double const deviations = table.number("deviations", 2.0, Range::positive());
+FrameChange make_intensity_cap(double deviations) {
   return [deviations](PreparedFrames& frames) {
     for_both<cv::Mat1d>(frames, [&](cv::Mat1d& levels, cv::Mat1d const& known) {
       std::vector<double> values;

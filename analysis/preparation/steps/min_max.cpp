@@ -5,9 +5,7 @@
 
 namespace gladstone {
 
-FrameChange read_min_max(SetupTable& table, FramePreparation&) {
-  int const window_px = static_cast<int>(table.integer("window_px", 15, 3, 511));
-  double const least_contrast = table.number("least_contrast", 0.05, Range::positive(1.0));
+FrameChange make_min_max(int window_px, double least_contrast) {
   return [window_px, least_contrast](PreparedFrames& frames) {
     for_both<cv::Mat1d>(frames, [&](cv::Mat1d& levels, cv::Mat1d const& known) {
       double lowest = 0.0, highest = 0.0;

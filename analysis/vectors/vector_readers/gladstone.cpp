@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <sstream>
 
 #include "analysis/vectors/vector_readers/own_columns.h"
 #include "analysis/vectors/vector_readers/vector_readers.h"
@@ -15,7 +16,7 @@
 namespace gladstone::detail {
 namespace {
 
-/// Columns that vectors.h5 and vectors.csv of every version have.
+/// Columns that vectors.h5 and vectors.csv contain in every version of gladstone.
 constexpr std::array<char const*, 8> oldest_columns{"x_px",       "y_px",       "u_px",       "v_px",
                                                     "sigma_u_px", "sigma_v_px", "peak_ratio", "status"};
 
@@ -35,7 +36,7 @@ void require_oldest_datasets(Hdf5Reader const& file, std::string const& path) {
   }
 }
 
-/// Returns the columns of a table.
+/// Converts a text table to columns of gladstone.
 OwnColumns columns_of(TextTable const& table) {
   OwnColumns columns{table.path, {}, table.line};
   for (std::size_t i = 0; i < table.names.size(); ++i) {
@@ -45,7 +46,8 @@ OwnColumns columns_of(TextTable const& table) {
   return columns;
 }
 
-/// Restores unknown values, which Tecplot files of older versions, without a column of marks, contain as 0.
+/// Restores the unknown values of Tecplot files of older versions, which contain 0 instead and do not mark these
+/// values.
 void restore_unmarked(DisplacementField& field) {
   auto const known = [](double value) { return value > 0.0 ? value : not_a_number; };
   for (Vec2d& sigma : field.sigma_px) sigma = {known(sigma.x), known(sigma.y)};
@@ -58,7 +60,7 @@ void restore_unmarked(DisplacementField& field) {
   }
 }
 
-/// Restores the values that the column `unknown` marks: bit k is that of column k.
+/// Replaces the values that the column `unknown` marks by NaN; bit k of a mark belongs to column k.
 /// @throws DataError with file:line if a mark is not a sum of such bits
 void restore_marked(OwnColumns& columns, TextTable const& table, std::vector<double> const& marks) {
   constexpr std::size_t exact_bits = 53;
@@ -120,3 +122,21 @@ VectorFile read_gladstone_tecplot(TextTable const& table) {
 }
 
 }  // namespace gladstone::detail
+
+namespace gladstone {
+
+Warnings read_warnings(Hdf5Reader const& file) {
+  Warnings warnings;
+  std::istringstream texts(file.attribute("warnings")), codes(file.attribute("warning_codes"));
+  for (std::string text, line; std::getline(texts, text);) {
+    std::getline(codes, line);
+    std::size_t const blank = std::min(line.find(' '), line.size());
+    std::string const place = line.substr(std::min(blank + 1, line.size()));
+    if (!place.empty()) text.erase(0, place.size() + 2);
+    warnings.push_back({find_warning_code(line.substr(0, blank)), place, text});
+    line.clear();
+  }
+  return warnings;
+}
+
+}  // namespace gladstone

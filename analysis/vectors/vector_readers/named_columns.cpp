@@ -105,7 +105,7 @@ void add_offsets(VectorFile& file, std::initializer_list<double> offsets_px) {
   }
 }
 
-// accepts every table; read_named_columns() checks the columns
+// Accepts every table; read_named_columns() checks the columns.
 bool has_named_columns(TextTable const&) { return true; }
 
 VectorFile read_named_columns(TextTable const& table) {

@@ -18,7 +18,7 @@
 namespace gladstone::detail {
 namespace {
 
-/// Variable of the schema and the column that it stores.
+/// Variable of PIVPy's schema and the column that the variable contains.
 struct SchemaColumn {
   char const* variable;
   char const* column;
@@ -54,8 +54,9 @@ class SchemaReader {
                                   fmt::join(file_.dataset_names(), ", ")));
     }
     if (file_.has("/w"))
-      throw DataError(ErrorCode::unsupported, path,
-                      "has three components (variable w), but two in px are needed; give the vectors of one camera");
+      throw DataError(
+          ErrorCode::unsupported, path,
+          "has three components (variable w), but two components in px are required; give the vectors of one camera");
     x_ = file_.read("/x");
     y_ = file_.read("/y");
   }
@@ -66,7 +67,7 @@ class SchemaReader {
     return is_pixel_unit(unit) || unit == "1" ? "" : unit;
   }
 
-  /// Returns the values row by row.
+  /// Returns the values of a variable row by row.
   std::vector<double> read(std::string const& variable) const {
     std::vector<std::size_t> const shape = file_.shape(variable);
     std::vector<std::string> const scales = file_.dimension_scales(variable);
@@ -86,7 +87,7 @@ class SchemaReader {
                                   variable.substr(1)));
     if (count != x_.size() * y_.size())
       throw DataError(ErrorCode::wrong_shape, path_,
-                      fmt::format("{} has {} frames, but one is needed; save one of them (xarray: ds.isel(t=[0]))",
+                      fmt::format("{} has {} frames, but one is required; save one of them (xarray: ds.isel(t=[0]))",
                                   variable.substr(1), count / std::max<std::size_t>(x_.size() * y_.size(), 1)));
     if (of_y < of_x) return stored;
     std::vector<double> by_rows(count);
@@ -130,9 +131,9 @@ void read_foreign_schema(SchemaReader const& reader, std::string const& path, Ve
   bool const none = std::none_of(choice.begin(), choice.end(), [](double chc) { return chc >= 1.0; });
   if (none && !choice.empty()) {
     file.warnings.push_back(
-        path +
-        ": chc marks all vectors as invalid (PIVPy copies the flags of an OpenPIV file, 0 for valid vectors, "
-        "to chc); if so, save the data set with chc = (chc == 0), or give the OpenPIV file");
+        {WarningCode::implausible, path,
+         "chc marks all vectors as invalid (PIVPy copies the flags of an OpenPIV file, 0 for valid vectors, to chc); "
+         "if so, save the data set with chc = (chc == 0), or give the OpenPIV file"});
   }
 }
 

@@ -18,12 +18,12 @@ VectorFile read_openpiv(TextTable const& table) {
       if (flag != 0.0) field.status[i] = flag == 2.0 ? VectorStatus::replaced : VectorStatus::invalid;
     }
     if (mask && table.values[*mask][i] != 0.0) {
-      // without flags, mask denotes invalid vectors
+      // in files without flags, the column mask denotes invalid vectors
       field.status[i] = flags ? VectorStatus::masked : VectorStatus::invalid;
     }
   }
-  // Either as measured or flipped by transform_coordinates. x = ws/2 is exact for several passes; for a single pass the
-  // window's centre is at (ws - 1)/2, half a pixel away.
+  // The vectors are stored either as measured or flipped by transform_coordinates. The position x = ws/2 is exact for
+  // several passes; for a single pass, the window's centre is at (ws - 1)/2, half a pixel away.
   file.conventions.offset_px = -0.5;
   VectorConventions turned = file.conventions;
   turned.y_up = turned.v_up = true;

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 14> own_columns{
     "x_px",   "y_px",     "u_px",     "v_px",        "sigma_u_px", "sigma_v_px", "peak_ratio",
     "status", "u_raw_px", "v_raw_px", "correlation", "reason",     "ambiguous",  "failed_test"};
 
-/// Access to the columns, with checks.
+/// Checked access to the columns of a file that gladstone wrote.
 class ColumnReader {
  public:
   explicit ColumnReader(OwnColumns const& columns) : columns_(columns), count_(required("x_px").size()) {

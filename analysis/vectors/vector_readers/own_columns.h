@@ -11,7 +11,7 @@
 
 namespace gladstone::detail {
 
-/// Columns of a file that gladstone wrote, by their names in vectors.csv and vectors.h5.
+/// Columns of a file that gladstone wrote, identified by their names in vectors.csv and vectors.h5.
 struct OwnColumns {
   std::string path;
   std::map<std::string, std::vector<double>, std::less<>> values{};
@@ -21,8 +21,8 @@ struct OwnColumns {
 /// Returns true if vectors.csv or vectors.h5 has a column of this name: "u_px", "failed_test".
 bool is_own_column(std::string_view name);
 
-/// Converts columns to vectors. Columns other than x_px, y_px, u_px and v_px may be missing: their quantities are then
-/// not recorded.
+/// Converts columns to vectors. Columns other than x_px, y_px, u_px and v_px may be missing; the corresponding
+/// quantities of the field are then empty.
 /// @throws DataError for missing columns, columns of another length than x_px, and numbers that are not codes
 VectorFile read_own_columns(OwnColumns const& columns);
 

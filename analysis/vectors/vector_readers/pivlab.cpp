@@ -20,7 +20,8 @@ VectorFile read_pivlab(TextTable const& table) {
       }
     }
   }
-  if (file.place_unit.empty()) file.conventions.offset_px = -1.5;  // 1-based, and ws/2 instead of (ws - 1)/2
+  // positions count from 1, and the centre of a window is at ws/2 instead of (ws - 1)/2
+  if (file.place_unit.empty()) file.conventions.offset_px = -1.5;
   add_offsets(file, {-1.0, -0.5, 0.0});
   return file;
 }

@@ -19,7 +19,7 @@ bool is_unit(std::string_view word) {
   return std::find(units.begin(), units.end(), word) != units.end();
 }
 
-/// Splits a line into words; a word in quotation marks may contain blanks, and loses its marks.
+/// Splits a line into words; a word in quotation marks may contain blanks, and the marks are removed.
 std::vector<std::string_view> quoted_words(std::string_view line) {
   std::vector<std::string_view> words;
   for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {

@@ -30,13 +30,13 @@ std::vector<std::string> tecplot_variables(std::string const& text);
 
 /// Header of DaVis' text export: #DaVis 8.4.0 2D-vector 16 49 49 "position" "mm" "position" "mm" "velocity" "m/s" are
 /// version, kind, window size, two sizes of the grid, and quantity and unit of x, of y and of both components.
-/// The units are in the places where PIVMat (Moisy, loadpivtxt.m, version 1.32) reads them from the same 12 words.
+/// PIVMat (Moisy, loadpivtxt.m, version 1.32) reads the units from the same positions among these 12 words.
 struct DavisHeader {
-  bool planar = false;             ///< 2D-vector: columns x, y, u, v
-  std::vector<std::string> names;  ///< "x [mm]", "y [mm]", "Vx [m/s]", "Vy [m/s]"
-  std::optional<double> vectors;   ///< number of vectors of the grid
+  bool planar = false;             ///< true if the kind is 2D-vector, with the columns x, y, u, v
+  std::vector<std::string> names;  ///< names of the columns: "x [mm]", "y [mm]", "Vx [m/s]", "Vy [m/s]"
+  std::optional<double> vectors;   ///< number of vectors of the grid; nullopt: not stated
 };
-/// @return nullopt if the line does not begin with "#DaVis"
+/// Parses the header line of DaVis' text export. @return nullopt if the line does not begin with "#DaVis"
 std::optional<DavisHeader> parse_davis_header(std::string_view line);
 
 /// Number of vectors according to the header of a file: I, J and K of a Tecplot zone, GridSize of Dantec, or the size
@@ -48,13 +48,13 @@ class DeclaredVectors {
   void add(std::string_view line, std::size_t line_number);
   /// Returns the declared number of vectors; nullopt if the header declares none.
   std::optional<double> count() const { return count_; }
-  /// Line number of the declaration.
+  /// Returns the line number of the declaration.
   std::size_t line() const { return line_; }
 
  private:
   std::optional<double> count_;
   std::size_t line_ = 0;
-  bool in_zone_ = false;  ///< a line with Tecplot's ZONE has been added
+  bool in_zone_ = false;  ///< true if a line with Tecplot's ZONE has been added
 };
 
 }  // namespace gladstone::detail

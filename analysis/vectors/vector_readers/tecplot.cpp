@@ -16,14 +16,14 @@ void mask_zeros(VectorFile& file, std::string const& path) {
     ++masked;
   }
   if (masked == 0) return;
-  file.warnings.push_back(
-      fmt::format("{}: {} of {} vectors are exactly zero and count as masked, since DaVis writes masked vectors like "
-                  "this; export the column isValid to mark them",
-                  path, masked, file.field.size()));
+  file.warnings.push_back({WarningCode::assumed, path,
+                           fmt::format("{} of {} vectors are exactly zero and count as masked, since DaVis writes "
+                                       "masked vectors like this; export the column isValid to mark them",
+                                       masked, file.field.size())});
 }
 
 /// Returns true if y increases from the first row of vectors to the next. DaVis' text export begins with the top row,
-/// so that y then points downwards (Moisy, PIVMat, loadpivtxt.m).
+/// so that y points downwards in this case (Moisy, PIVMat, loadpivtxt.m).
 bool begins_with_smaller_y(DisplacementField const& field) {
   auto const next = std::find_if(field.position_px.begin(), field.position_px.end(),
                                  [&](Vec2d const& p) { return p.y != field.position_px.front().y; });

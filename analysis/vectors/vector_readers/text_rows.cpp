@@ -49,7 +49,8 @@ std::optional<double> number(std::string_view text, char decimal) {
   double value = 0.0;
   auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size()) return std::nullopt;
-  if (error == std::errc::result_out_of_range) {  // outside of the range of double: 1e400 is infinite, 1e-400 is 0
+  // outside the range of double: 1e400 becomes infinite, 1e-400 becomes 0
+  if (error == std::errc::result_out_of_range) {
     bool const tiny = text.find("e-") != std::string_view::npos || text.find("E-") != std::string_view::npos;
     value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
     return text.front() == '-' ? -value : value;
@@ -65,7 +66,7 @@ std::vector<std::string_view> fields_of(std::string_view line, RowFormat format,
 }
 
 RowFormat row_format(std::string_view line, std::size_t columns) {
-  // the last one requires fields in quotation marks
+  // the last of these formats requires fields in quotation marks
   constexpr std::array<RowFormat, 8> formats{
       {{';', '.'}, {';', ','}, {',', '.'}, {'\t', '.'}, {'\t', ','}, {' ', '.'}, {' ', ','}, {',', ','}}};
   for (RowFormat const format : formats) {

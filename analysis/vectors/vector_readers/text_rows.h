@@ -16,12 +16,12 @@ inline constexpr std::string_view blanks = " \t\r";
 char detect_separator(std::string_view line);
 
 /// Splits a line into fields without surrounding blanks. A field in quotation marks may contain the separator (RFC
-/// 4180), and loses its marks; with blanks as separator, quotation marks have no meaning.
+/// 4180), and its quotation marks are removed; with blanks as separator, quotation marks have no meaning.
 std::vector<std::string_view> split(std::string_view line, char separator);
 
 /// Number format of a row.
 struct RowFormat {
-  char separator = 0;  ///< 0: not yet determined
+  char separator = 0;  ///< character between fields; 0: not yet determined
   char decimal = '.';
 };
 

@@ -31,7 +31,8 @@ class TableReader {
       if (format_.separator == 0) name_columns(text);
       if (text.front() == '#') continue;
       if (table_.tecplot && lower_case(text.substr(0, 4)) == "zone") {
-        table_.warnings.push_back(file_.place() + ": another zone begins here; only the first one is read");
+        table_.warnings.push_back(
+            {WarningCode::ignored, file_.place(), "another zone begins here; only the first one is read"});
         break;
       }
       zone_.block ? add_block_values(text) : add_row(text);
@@ -46,7 +47,8 @@ class TableReader {
     throw DataError(code, fmt::format("{}:{}", table_.path, line), message);
   }
 
-  /// Takes a line before the first row of numbers; the last of them is the header. @return false for other lines
+  /// Stores a line before the first row of numbers; the last of these lines is the header. @return false if the line is
+  /// not one of them
   bool read_header_line(std::string_view text) {
     if (format_.separator != 0 || number(split(text, detect_separator(text)).front(), ',')) return false;
     std::size_t const at = file_.number();
@@ -114,7 +116,7 @@ class TableReader {
     table_.line.push_back(at);
   }
 
-  /// Adds a line of a zone in BLOCK packing.
+  /// Adds the values of a line to a zone in BLOCK packing.
   void add_block_values(std::string_view text) {
     for (std::string_view const field : split(text, format_.separator)) {
       std::optional<double> const value = number(field);
@@ -138,7 +140,7 @@ class TableReader {
                      excerpt(fmt::format("{}", fmt::join(table_.names, ", ")), 200), commas));
   }
 
-  /// Checks that there are rows, and warns if they are not as many as the header declares.
+  /// Checks that there are rows, and warns if their number differs from that declared in the header.
   void check_rows() {
     if (table_.header_line == 0 && table_.has_header)
       throw DataError(ErrorCode::missing_content, table_.path + ":1", "the file is empty");
@@ -146,19 +148,19 @@ class TableReader {
       fail(ErrorCode::missing_content, table_.header_line, "no row of numbers follows the header");
     if (!declared_.count() || *declared_.count() == static_cast<double>(table_.rows())) return;
     table_.complete = false;
-    table_.warnings.push_back(
-        fmt::format("{}:{}: the header declares {} vectors, but the file contains {} (truncated, or written with "
-                    "another header); export it again",
-                    table_.path, declared_.line(), *declared_.count(), table_.rows()));
+    table_.warnings.push_back({WarningCode::incomplete, fmt::format("{}:{}", table_.path, declared_.line()),
+                               fmt::format("the header declares {} vectors, but the file contains {} (truncated, or "
+                                           "written with another header); export it again",
+                                           *declared_.count(), table_.rows())});
   }
 
   LineReader file_;
   TextTable table_;
-  std::string header_;  ///< last line before the rows
+  std::string header_;  ///< last line before the rows of numbers
   DeclaredVectors declared_;
-  RowFormat format_;  ///< without separator until the first row of numbers
+  RowFormat format_;  ///< format of the rows; has no separator until the first row of numbers
   TecplotZone zone_;
-  BlockValues block_;  ///< empty without BLOCK packing
+  BlockValues block_;  ///< values of a zone in BLOCK packing; empty for other packings
 };
 
 }  // namespace

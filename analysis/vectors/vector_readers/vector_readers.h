@@ -12,15 +12,18 @@ namespace gladstone::detail {
 /// Reads vectors.h5 of gladstone. @throws DataError that contains the name of the dataset
 VectorFile read_gladstone_hdf5(std::string const& path);
 
-/// netCDF-4 in the schema of PIVPy, of gladstone or of PIVPy itself: u and v over (y, x, t) in any order, of one frame.
-/// Validity from `status`, else from `chc`. Other programs: y and v down, or both up about the grid.
+/// Reads netCDF-4 in the schema of PIVPy, written by gladstone or other programs such as PIVPy itself: u and v over (y,
+/// x, t) in any order, of one frame. The validity is read from `status`, else from `chc`. In files of other programs, y
+/// and v point downwards, or both upwards about the centre of the grid.
 /// @throws DataError for netCDF-3, several frames or three components
 VectorFile read_vector_netcdf(std::string const& path);
 
-/// MATLAB level 5 or 7.3 with a matrix for each column of vectors.csv. @throws DataError if columns are missing
+/// Reads MATLAB files of level 5 or 7.3 with a matrix for each column of vectors.csv. @throws DataError if columns are
+/// missing
 VectorFile read_vector_matlab(std::string const& path);
 
-/// VTK image (.vti) or points (.vtp) with the arrays that gladstone writes. @throws DataError if arrays are missing
+/// Reads VTK images (.vti) or points (.vtp) with the arrays that gladstone writes. @throws DataError if arrays are
+/// missing
 VectorFile read_vector_vtk(std::string const& path);
 
 /// Text formats. For each, a function recognises a table of the format and another converts it to vectors.
@@ -60,12 +63,12 @@ VectorFile read_dantec(TextTable const& table);
 bool is_jpiv(TextTable const& table);
 VectorFile read_jpiv(TextTable const& table);
 
-/// Any table, as last resort: columns x, y, u, v (or x_px, ...), optionally sigma_u, sigma_v (su, sv), peak_ratio,
-/// status, chc, isValid. Recognises every table; read_named_columns() throws DataError if x, y, u or v is missing.
+/// Recognises any table; tried last. Columns: x, y, u, v (or x_px, ...), optionally sigma_u, sigma_v (su, sv),
+/// peak_ratio, status, chc, isValid. read_named_columns() throws DataError if x, y, u or v is missing.
 bool has_named_columns(TextTable const& table);
 VectorFile read_named_columns(TextTable const& table);
 
-/// Reads x, y, u, v of a table, in any of their names and units, together with the units.
+/// Reads x, y, u and v of a table together with their units; the columns may have any of the known names.
 /// @param others  names of further columns that the caller uses; VectorFile::notes contains the remaining ones
 VectorFile read_quantities(TextTable const& table, std::string const& format,
                            std::initializer_list<std::string_view> others);
@@ -77,12 +80,12 @@ void add_offsets(VectorFile& file, std::initializer_list<double> offsets_px);
 DisplacementField plain_vectors(std::vector<double> const& x, std::vector<double> const& y,
                                 std::vector<double> const& u, std::vector<double> const& v);
 
-/// Reads the validity of TSI Insight (column CHC) and DaVis (column isValid), under which names other programs write it
-/// as well: CHC 1 measured, above 1 replaced, below 1 invalid; isValid above 0 measured, otherwise masked.
+/// Reads the validity of TSI Insight (column CHC) and DaVis (column isValid), which other programs also write under
+/// these names: CHC 1 measured, above 1 replaced, below 1 invalid; isValid above 0 measured, otherwise masked.
 /// @return false if the table has neither column
 bool read_validity(TextTable const& table, DisplacementField& field);
 
-/// Reads a status column with our codes. @throws DataError with file:line for any other number
+/// Reads a status column with the codes of VectorStatus. @throws DataError with file:line for any other number
 void read_status(TextTable const& table, std::size_t column, DisplacementField& field);
 
 }  // namespace gladstone::detail

@@ -65,7 +65,11 @@ void write_vector_columns(std::string const& path, DisplacementField const& fiel
     file.attribute("/", "uncertainty_method", field.uncertainty_method);
     file.attribute("/", "uncertainty_key", field.uncertainty_key);
   }
-  file.attribute("/", "warnings", fmt::format("{}", fmt::join(field.warnings, "\n")));
+  file.attribute("/", "warnings", fmt::format("{}", fmt::join(to_strings(field.warnings), "\n")));
+  std::vector<std::string> codes;
+  for (Warning const& warning : field.warnings)
+    codes.push_back(fmt::format("{} {}", warning_code_name(warning.code), warning.place));
+  file.attribute("/", "warning_codes", fmt::format("{}", fmt::join(codes, "\n")));
   if (field.columns > 0) {
     file.attribute("/", "grid_columns", std::int64_t{field.columns});
     file.attribute("/", "grid_rows", std::int64_t{field.rows});

@@ -10,7 +10,7 @@
 namespace gladstone::detail {
 namespace {
 
-/// Appends one row per vector, codes as integers and other numbers with 17 significant digits.
+/// Appends one row per vector. Codes are written as integers, other numbers with 17 significant digits.
 void append_rows(std::string& text, std::vector<VectorColumn> const& columns, std::size_t rows, char separator) {
   for (std::size_t i = 0; i < rows; ++i) {
     for (VectorColumn const& column : columns) {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
+#include "render/base/error.h"
 
 namespace gladstone {
 namespace {
@@ -77,7 +77,7 @@ detail::VtkLayout make_layout() {
           {{"displacement_mm", {"u_mm", "v_mm", "w_mm"}}, {"sigma_mm", {"sigma_u_mm", "sigma_v_mm", "sigma_w_mm"}}}};
 }
 
-/// A VTK image lies in the plane z = 0; z of the nodes is an array.
+/// Writes a VTK image, which is in the plane z = 0; the z of the nodes is stored as an array.
 void write_vti(std::string const& path, ThreeComponentField const& field, FileOrigin const& origin) {
   detail::VtkLayout layout = make_layout();
   layout.position.components[2].clear();
@@ -120,8 +120,8 @@ void write_three_components(std::string const& path, ThreeComponentField const& 
   auto const* const writer =
       std::find_if(writers.begin(), writers.end(), [&](auto const& one) { return path.ends_with(one.extension); });
   if (writer == writers.end())
-    throw std::invalid_argument(fmt::format("{}: three components are written as {}; use one of these endings", path,
-                                            fmt::join(three_component_extensions(), ", ")));
+    throw OutputError(path, fmt::format("three components are written as {}; use one of these endings",
+                                        fmt::join(three_component_extensions(), ", ")));
   writer->write(path, field, origin);
 }
 

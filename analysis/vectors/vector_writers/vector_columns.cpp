@@ -45,7 +45,7 @@ std::vector<VectorColumn> vector_columns(DisplacementField const& field) {
   auto const number = [count](char const* name, char const* units, char const* description, auto const& value_of) {
     return make_column(name, units, description, count, value_of);
   };
-  std::vector<Ambiguity> ambiguous = field.ambiguous;  // files do not distinguish in which pass
+  std::vector<Ambiguity> ambiguous = field.ambiguous;  // files do not state in which pass a vector became ambiguous
   std::replace(ambiguous.begin(), ambiguous.end(), Ambiguity::earlier, Ambiguity::here);
   return {
       number("x_px", "px", "column of the window centre, pixel centres at integers from 0",

@@ -9,10 +9,10 @@ namespace gladstone::detail {
 
 /// Quantity of all vectors, as files store it.
 struct VectorColumn {
-  std::string name;         ///< with its unit: "u_px"
+  std::string name;         ///< name of the column with its unit: "u_px"
   std::string units;        ///< "px" or "1"
   std::string description;  ///< meaning of the numbers
-  bool is_code = false;     ///< integers, such as the status
+  bool is_code = false;     ///< true if the values are integer codes, such as the status
   std::vector<double> values;
 
   /// Returns true if at least one vector has a finite value.
@@ -22,20 +22,20 @@ struct VectorColumn {
 /// Vectors as the writers store them.
 struct VectorTable {
   std::vector<VectorColumn> columns;
-  int grid_columns = 0, grid_rows = 0;  ///< 0: scattered
+  int grid_columns = 0, grid_rows = 0;  ///< numbers of columns and rows of the grid; 0: scattered vectors
   std::string remark;                   ///< units and directions of the axes, for headers
-  std::string content = "vectors";      ///< what the columns are, for headers
-  int grid_layers = 1;                  ///< number of such grids along z, stored one after the other
+  std::string content = "vectors";      ///< name of the rows' content for headers: "vectors"
+  int grid_layers = 1;                  ///< number of grid layers along z, stored one after the other
 
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
 };
 
 /// Returns the quantities of vectors.csv in their order: x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
-/// status, u_raw_px, v_raw_px, correlation, reason, ambiguous. Values that were not estimated are NaN. Vectors without
-/// raw displacements are their own raw displacements, with reason 0 (as measured).
+/// status, u_raw_px, v_raw_px, correlation, reason, ambiguous. Values that were not estimated are NaN. If the field has
+/// no raw displacements, the displacements are used instead, with reason 0 (measured).
 std::vector<VectorColumn> vector_columns(DisplacementField const& field);
 
-/// Returns the same with the grid and the remark for headers.
+/// Returns the quantities of vector_columns() together with the size of the grid and the remark for headers.
 VectorTable vector_table(DisplacementField const& field);
 
 /// Returns a column of numbers.
@@ -52,7 +52,7 @@ struct VectorGrid {
 };
 
 /// Returns the coordinates of the grid: those of its first row and of its first column.
-/// @param kind  of the output file, for the message: "NetCDF"
+/// @param kind  kind of the output file for the message: "NetCDF"
 /// @throws OutputError if the vectors are scattered
 VectorGrid require_vector_grid(DisplacementField const& field, std::string const& path, std::string const& kind);
 

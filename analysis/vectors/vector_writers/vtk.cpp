@@ -14,7 +14,7 @@
 namespace gladstone::detail {
 namespace {
 
-/// Returns a <DataArray> with its values in base64: the number of bytes, then the bytes.
+/// Returns a <DataArray> whose values are encoded in base64: the number of bytes, then the bytes.
 template <class Value>
 std::string data_array(std::string const& type, std::string const& name, std::size_t components,
                        std::vector<Value> const& values) {
@@ -31,7 +31,7 @@ std::string scalar_array(VectorColumn const& column) {
   return data_array("Int32", column.name, 1, std::vector<std::int32_t>(column.values.begin(), column.values.end()));
 }
 
-/// Joins columns to vectors of three components, which VTK requires to draw arrows; a missing third one is 0.
+/// Joins columns to vectors with three components, which VTK requires to draw arrows; a missing third component is 0.
 std::string join_columns(std::vector<VectorColumn> const& columns, VtkVectors const& vectors) {
   std::vector<double> values;
   std::size_t const count = column_named(columns, vectors.components[0]).values.size();
@@ -46,7 +46,8 @@ bool is_known(std::vector<VectorColumn> const& columns, VtkVectors const& vector
                      [&](std::string const& name) { return !name.empty() && column_named(columns, name).is_known(); });
 }
 
-/// Returns the arrays at the points: displacements, other known vectors, and the other quantities that are known.
+/// Returns the element <PointData> with the arrays at the points: displacements, and all other vectors and scalars that
+/// are known.
 std::string point_data(std::vector<VectorColumn> const& columns, VtkLayout const& layout) {
   std::string text = fmt::format("<PointData Vectors=\"{}\">\n", layout.vectors.front().name);
   std::set<std::string> joined(layout.position.components.begin(), layout.position.components.end());
@@ -61,9 +62,9 @@ std::string point_data(std::vector<VectorColumn> const& columns, VtkLayout const
   return text + "</PointData>\n";
 }
 
-/// Returns the file of one data set.
+/// Returns the text of a VTK file that contains one data set.
 /// @param type     type of the data set, which is also the name of its element
-/// @param element  attributes of that element, with a leading blank, or nothing
+/// @param element  attributes of the element, with a leading blank; may be empty
 /// @param remark   what the file contains, with units and directions of the axes
 std::string vtk_file(std::string const& type, std::string const& element, std::string const& content,
                      std::string const& remark) {
@@ -75,7 +76,7 @@ std::string vtk_file(std::string const& type, std::string const& element, std::s
       type, order, element, content, remark);
 }
 
-/// Returns the spacing of coordinates.
+/// Returns the uniform spacing of coordinates.
 /// @throws OutputError if they deviate from uniform ones by more than 0.01 px, within which positions count as equal
 double uniform_spacing(std::vector<double> const& places, std::string const& path) {
   if (places.size() < 2) return 1.0;
@@ -100,7 +101,7 @@ std::string vectors_remark(VectorTable const& table) {
   return "vectors: positions and displacements in " + table.remark;
 }
 
-/// Layout of two components.
+/// Returns the columns that form the positions and vectors of a field with two components.
 VtkLayout plane_layout() {
   return {{"position_px", {"x_px", "y_px", ""}},
           {{"displacement_px", {"u_px", "v_px", ""}},

@@ -77,7 +77,7 @@ def deflect_once(plane, place_px, f_number):
 
 
 def second_order(plane, f_number):
-    """Second-order part of the density that is measured at the nodes of the plane."""
+    """Returns the second-order part of the measured density at the nodes of the plane."""
     lever = Z_A_MM * Z_D_MM / (Z_A_MM + Z_D_MM)
     squares = average_over_cone((deflections(plane) ** 2).sum(axis=0), f_number)
     return -0.5 * lever * AMBIENT_INDEX / (GLADSTONE_DALE * THICKNESS_MM) * squares

@@ -2,7 +2,7 @@
 
 Renders a laser sheet seen by two cameras at 30 and at 45 degrees from its normal, with uniform motion and with waves of
 u, v and w (largest gradient 0.04 px per px), with and without noise. Both ways of dewarping reconstruct the same
-images. Prints a table, and draws its figure to dewarp.png beside this file, or in FOLDER, if given.
+images. Prints a table, and draws its figure to dewarp.png next to this file, or in FOLDER, if given.
 
 Needs: pip install numpy h5py matplotlib
 """

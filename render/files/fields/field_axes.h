@@ -9,7 +9,7 @@ namespace gladstone {
 
 /// Spatial axis of an array as stored in its file.
 struct StoredAxis {
-  char world = 'x';                 ///< world axis assigned to it: 'x', 'y' or 'z'
+  char world = 'x';                 ///< world axis assigned to the stored axis: 'x', 'y' or 'z'
   double first = 0;                 ///< coordinate of the first node [length unit of the file]
   double step = 1;                  ///< distance between nodes [length unit of the file]; negative if the axis is
                                     ///< stored in descending order
@@ -31,11 +31,11 @@ inline StoredAxes default_axes() {
 struct AxisAssignment {
   std::string axes = "zyx";              ///< world axes in the order of the file, slowest first
   std::string by = "the default order";  ///< source of the order
-  std::vector<std::size_t> shape;        ///< number of nodes along each, in the same order
+  std::vector<std::size_t> shape;        ///< number of nodes along each axis, in the order of `axes`
   std::string turned_round;              ///< world axes stored in descending order: "xy"
 
-  /// Describes the assignment: "[16, 20, 24] is read as z, y, x (by its coordinates); y runs backwards in the file and
-  /// is turned round".
+  /// Describes the assignment: "[16, 20, 24] is read as z, y, x (by its coordinates); y descends in the file and is
+  /// reversed".
   std::string text() const;
 };
 

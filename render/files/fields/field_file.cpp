@@ -45,15 +45,15 @@ std::unique_ptr<FieldSource> open_field(std::string const& path, std::string con
                                         std::string const& axes) {
   require_input_file(path, "a field file");
   std::string const extension = lower_case(std::filesystem::path(path).extension().string());
-  std::string known;
   for (auto const& format : field_formats) {
     if (extension == format.extension) {
       auto oriented = std::make_unique<OrientedField>(format.open(path, {dataset, values, axes}));
       if (oriented->uniform()) return oriented;
       return std::make_unique<ResampledField>(std::move(oriented));
     }
-    known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
+  std::string known;
+  for (std::string const& name : field_extensions()) known += (known.empty() ? "" : ", ") + name;
   throw DataError(ErrorCode::unsupported, path, "has an unsupported format; supported are " + known);
 }
 

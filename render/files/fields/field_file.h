@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/base/regular_grid.h"
+#include "render/base/warning.h"
 #include "render/files/fields/field_axes.h"
 #include "render/files/fields/field_units.h"
 
@@ -23,7 +24,7 @@ class FieldSource {
   /// Assignment of the file's axes to world axes.
   virtual AxisAssignment const& reading() const = 0;
   /// Returns warnings about assumptions, ignored information and the resampling error; may read the whole field.
-  virtual std::vector<std::string> notes() = 0;
+  virtual Warnings notes() = 0;
   /// Name of the array in the file ("Density_0001"), for messages.
   virtual std::string const& name() const = 0;
   /// Number of values per node: 1 for a scalar field, 3 for a velocity.
@@ -35,7 +36,7 @@ class FieldSource {
   /// @throws DataError for missing values (-999.9 in JHTDB), NaN and values beyond the range of float, with their
   ///         number, and for truncated data
   virtual void read_planes(int first_plane, int count, std::span<double> out) = 0;
-  /// Reads rows [first_row, first_row + count) of one plane, as read_planes(), for planes too large for memory.
+  /// Reads rows [first_row, first_row + count) of one plane, like read_planes(), for planes too large for memory.
   virtual void read_rows(int plane, int first_row, int count, std::span<double> out) = 0;
 
  protected:

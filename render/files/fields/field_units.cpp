@@ -205,7 +205,7 @@ double FieldUnits::metres() const {
 
 std::string FieldUnits::assumed() const {
   if (!spaced) return "the file gives no coordinates that are known here, and nodes are taken 1 mm apart";
-  return states_unit(length) ? "" : "lengths name no unit and are taken as mm";
+  return states_unit(length) ? "" : "lengths have no unit in the file and are taken as mm";
 }
 
 std::string FieldUnits::undefined() const {
@@ -223,7 +223,7 @@ ValueFactor FieldUnits::value_factor(Dimension const& dimension) const {
 }
 
 void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3> const& unit_of, FieldUnits& units,
-                     std::vector<std::string>& notes) {
+                     Warnings& notes) {
   for (auto const& unit : unit_of) {
     if (unit && states_unit(*unit) && units.length.empty()) units.length = *unit;
   }
@@ -248,7 +248,8 @@ void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3>
   }
   if (!without.empty()) {
     notes.push_back(
-        fmt::format("lengths along {} name no unit and are taken to be in {}, as the others", without, units.length));
+        {WarningCode::assumed, "",
+         fmt::format("lengths along {} name no unit and are taken to be in {}, as the others", without, units.length)});
   }
 }
 

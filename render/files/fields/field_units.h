@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/field_axes.h"
 
 namespace gladstone {
@@ -21,7 +22,7 @@ inline constexpr Dimension dimension_of_length{0, 1, 0}, dimension_of_density{1,
 /// Factor that converts the values of a file to SI, and a warning if their unit is not used.
 struct ValueFactor {
   double factor = 1;
-  std::string warning;  ///< empty: no unit is stated, or it was converted
+  std::string warning;  ///< warning that the unit is not used; empty: no unit is stated, or it was converted
 };
 
 /// Units of a field as stated in its file.
@@ -34,8 +35,8 @@ struct FieldUnits {
 
   /// Size of the unit of length [m]; 1 mm if it is not stated or not recognised.
   double metres() const;
-  /// Describes the assumption made about lengths, "lengths name no unit and are taken as mm"; empty if none was
-  /// necessary.
+  /// Describes the assumption made about lengths, "lengths have no unit in the file and are taken as mm"; empty if none
+  /// was necessary.
   std::string assumed() const;
   /// Describes why the spacing is undefined, "lengths are in \"furlong\", which is not a known unit of length"; empty
   /// if it is defined. The user must then give the spacing.
@@ -70,6 +71,6 @@ double length_unit(std::string_view name);
 /// @param units    receives `length` and, if a unit cannot be converted, `unknown`
 /// @param notes    receives the note
 void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3> const& unit_of, FieldUnits& units,
-                     std::vector<std::string>& notes);
+                     Warnings& notes);
 
 }  // namespace gladstone

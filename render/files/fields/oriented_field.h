@@ -17,7 +17,7 @@ class OrientedField final : public FieldSource {
   RegularGrid const& grid() const override { return grid_; }
   FieldUnits const& units() const override { return stored_->units(); }
   AxisAssignment const& reading() const override { return stored_->reading(); }
-  std::vector<std::string> notes() override { return stored_->notes(); }
+  Warnings notes() override { return stored_->notes(); }
   std::string const& name() const override { return stored_->name(); }
   std::string const& path() const { return stored_->path(); }
   int significant_bits() const override { return stored_->significant_bits(); }

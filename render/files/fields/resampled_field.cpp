@@ -161,9 +161,9 @@ double ResampledField::error_bound() {
   return error_;
 }
 
-std::vector<std::string> ResampledField::notes() {
+Warnings ResampledField::notes() {
   double const error = error_bound();
-  std::vector<std::string> notes = source_->notes();
+  Warnings notes = source_->notes();
   std::string axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto const& x = source_->coordinates(axis);
@@ -172,10 +172,10 @@ std::vector<std::string> ResampledField::notes() {
                         "xyz"[axis], finest_spacing(x), coarsest_spacing(x), grid_.nodes[axis],
                         grid_.spacing[static_cast<int>(axis)]);
   }
-  notes.push_back(
-      fmt::format("the file's nodes are not equidistant and were interpolated to a uniform grid: {}; the error of the "
-                  "interpolation is at most {:.2g} ({:.2g} % of the range of values)",
-                  axes, error, range_ > 0 ? 100 * error / range_ : 0.0));
+  notes.push_back({WarningCode::approximated, "",
+                   fmt::format("the file's nodes are not equidistant and were interpolated to a uniform grid: {}; the "
+                               "error of the interpolation is at most {:.2g} ({:.2g} % of the range of values)",
+                               axes, error, range_ > 0 ? 100 * error / range_ : 0.0)});
   return notes;
 }
 

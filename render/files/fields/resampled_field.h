@@ -19,7 +19,7 @@ class ResampledField final : public FieldSource {
   RegularGrid const& grid() const override { return grid_; }
   FieldUnits const& units() const override { return source_->units(); }
   AxisAssignment const& reading() const override { return source_->reading(); }
-  std::vector<std::string> notes() override;
+  Warnings notes() override;
   std::string const& name() const override { return source_->name(); }
   int significant_bits() const override { return source_->significant_bits(); }
   void read_planes(int first_plane, int count, std::span<double> out) override;

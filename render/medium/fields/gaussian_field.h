@@ -29,8 +29,7 @@ struct GaussianField : Slab<T> {
   /// Returns the largest gradient, within a distance `reach` [m] from the axis, of the density averaged over the slab
   /// -h < z < h [kg/m^4]. The gradient
   ///   2 |A| r / a^2 exp(-r^2 / a^2) sqrt(pi) a erf(h / a) / (2 h)
-  /// is largest at r = a / sqrt(2), or at r = reach if that is smaller. For h >> a it is sqrt(2 pi / e) |A| / (2 h),
-  /// F29 of physics.md.
+  /// is largest at r = a / sqrt(2), or at r = reach if that is smaller. For h >> a it is sqrt(2 pi / e) |A| / (2 h).
   T steepest_mean_density_within(T reach) const {
     T const r = std::min(reach, radius / std::sqrt(T(2))), h = this->half_thickness;
     T const slope = T(2) * std::abs(amplitude) * r / (radius * radius) * std::exp(-r * r / (radius * radius));

@@ -25,13 +25,14 @@ LensletSetup LensletSetup::read(SetupTable& table) {
   return setup;
 }
 
-std::string LensletSetup::imaging_warning(ImagingGeometry const& imaging, double f_number) const {
+std::optional<Warning> LensletSetup::imaging_warning(ImagingGeometry const& imaging, double f_number) const {
   double const picture = to_sensor * imaging.entrance_pupil / imaging.image_distance;
   if (picture <= pitch) return {};
-  return fmt::format(
-      "lenslets: each images the stop with a diameter of {:.4g} um, more than their pitch of {:.4g} um, so that these "
-      "images overlap; stop the lens down to f/{:.3g} or use lenslets of a shorter focal length",
-      picture / unit::micrometre, pitch / unit::micrometre, f_number * picture / pitch);
+  return Warning{
+      WarningCode::unsuitable, "lenslets",
+      fmt::format("each images the stop with a diameter of {:.4g} um, more than their pitch of {:.4g} um, so that "
+                  "these images overlap; stop the lens down to f/{:.3g} or use lenslets of a shorter focal length",
+                  picture / unit::micrometre, pitch / unit::micrometre, f_number * picture / pitch)};
 }
 
 }  // namespace gladstone

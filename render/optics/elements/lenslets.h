@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "render/base/in_scalar.h"
 #include "render/base/pose.h"
+#include "render/base/warning.h"
 #include "render/optics/element_side.h"
 #include "render/optics/lens_surface.h"
 #include "render/setup/setup_table.h"
@@ -86,8 +88,8 @@ struct LensletSetup {
   /// f-number of the images that the lenslets form on the sensor, on which their diffraction depends [1].
   double image_f_number() const { return to_sensor / pitch; }
   /// Warns if the images of the stop behind the lenslets overlap. To avoid this, the f-number of the lenslets must not
-  /// exceed that of the lens (Ng et al., Stanford Tech Report CTSR 2005-02, section 3.1). @return empty: no warning
-  std::string imaging_warning(ImagingGeometry const& imaging, double f_number) const;
+  /// exceed that of the lens (Ng et al., Stanford Tech Report CTSR 2005-02, section 3.1). @return nullopt: no warning
+  std::optional<Warning> imaging_warning(ImagingGeometry const& imaging, double f_number) const;
 
   template <class Add>
   void add_surfaces(Pose<double> const& at, bool, Add const& add) const {

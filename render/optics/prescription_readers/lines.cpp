@@ -81,10 +81,10 @@ void set_primary_wavelength(Prescription& lens, ListedWavelength const* primary,
     lens.primary_wavelength = primary->value * unit;
     return;
   }
-  lens.warnings.push_back(
-      fmt::format("{}: the file gives no primary wavelength ({}); {:.7g} nm (the d line) is used unless another "
-                  "wavelength is chosen",
-                  primary ? primary->where : where, commands, spectral_line::d / unit::nanometre));
+  lens.warnings.push_back({WarningCode::assumed, primary ? primary->where : where,
+                           fmt::format("the file gives no primary wavelength ({}); {:.7g} nm (the d line) is used "
+                                       "unless another wavelength is chosen",
+                                       commands, spectral_line::d / unit::nanometre)});
 }
 
 std::string replace_decimal_commas(std::vector<std::string>& words) {

@@ -37,7 +37,7 @@ std::string describe_wavelength_fault(double value, double unit, std::string_vie
 
 /// Wavelength as a file lists it.
 struct ListedWavelength {
-  double value = 0;   ///< in the unit of the file
+  double value = 0;   ///< wavelength in the unit of the file
   std::string where;  ///< file:line
 };
 

@@ -57,9 +57,9 @@ class SeqReader {
                       "surfaces, the image)");
     }
     if (!image_) {
-      warn(surfaces_.back().surface.where +
-           ": the file has no image surface SI behind this one, whose thickness is taken as the distance to the image; "
-           "if the file was cut short, copy it again");
+      warn({WarningCode::incomplete, surfaces_.back().surface.where,
+            "the file has no image surface SI behind this one, whose thickness is taken as the distance to the image; "
+            "if the file was cut short, copy it again"});
     }
     if (!system_.radii_said) judge_curvatures();
     if (result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil)
@@ -78,9 +78,10 @@ class SeqReader {
     assume_aperture(result_, "EPD, FNO, NAO");
     if (!unknown_.empty()) {
       bool const one = unknown_.size() == 1;
-      warn(fmt::format("{}: {} {} {} unknown and {} ignored; check that {} not change the lens", unknown_where_,
-                       one ? "command" : "commands", fmt::join(unknown_, ", "), one ? "is" : "are",
-                       one ? "was" : "were", one ? "it does" : "they do"));
+      warn({WarningCode::ignored, unknown_where_,
+            fmt::format("{} {} {} unknown and {} ignored; check that {} not change the lens",
+                        one ? "command" : "commands", fmt::join(unknown_, ", "), one ? "is" : "are",
+                        one ? "was" : "were", one ? "it does" : "they do")});
     }
     return std::move(result_);
   }
@@ -101,17 +102,17 @@ class SeqReader {
   void solve_paraxial_image() {
     if (system_.paraxial_image_where.empty()) return;
     if (result_.ends_at_image) {
-      warn(system_.paraxial_image_where +
-           ": PIM: the image is behind a decentre or tilt; the last thickness of the file is used");
+      warn({WarningCode::ignored, system_.paraxial_image_where,
+            "PIM: the image is behind a decentre or tilt; the last thickness of the file is used"});
       return;
     }
     result_.surfaces.back().thickness = 0;
     if (std::isfinite(image_defocus_)) result_.defocus = image_defocus_;
   }
 
-  void warn(std::string const& text) { result_.warnings.push_back(text); }
+  void warn(Warning warning) { result_.warnings.push_back(std::move(warning)); }
 
-  /// Reads "S radius thickness [glass]".
+  /// Adds the surface that starts with the line "S radius thickness [glass]".
   void begin_surface(std::string const& command, PrescriptionLine const& line) {
     if (image_)
       throw DataError(ErrorCode::damaged, line.where,
@@ -246,11 +247,10 @@ class SeqReader {
       PrescribedSurface& surface = surfaces_[i].surface;
       surface.curvature = curvature_of(surface.curvature * system_.unit, true);
     }
-    warn(
-        fmt::format("{}: the file has no RDM, so that its numbers would be curvatures, CODE V's default; surfaces with "
-                    "such curvatures would be narrower than the beam, so the numbers are taken as radii (write RDM, or "
-                    "RDM N for curvatures)",
-                    surfaces_[1].surface.where));
+    warn({WarningCode::assumed, surfaces_[1].surface.where,
+          "the file has no RDM, so that its numbers would be curvatures, CODE V's default; surfaces with such "
+          "curvatures would be narrower than the beam, so the numbers are taken as radii (write RDM, or RDM N for "
+          "curvatures)"});
   }
 
   /// Moves the surfaces, with their coordinate breaks and that of the image, to the result.
@@ -278,7 +278,7 @@ class SeqReader {
   Prescription result_;
   SeqSystem system_;
   std::vector<SeqSurface> surfaces_;  // surfaces of the file; the first one is the object
-  SeqSurface image_surface_;          // only its coordinate frame is used
+  SeqSurface image_surface_;          // image SI, of which only the coordinate frame is used
   PrivateGlasses private_glasses_;
   std::vector<std::string> unknown_;  // unknown commands
   std::string unknown_where_;

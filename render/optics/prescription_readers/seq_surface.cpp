@@ -20,7 +20,7 @@ std::size_t aspheric_term(char letter) { return static_cast<std::size_t>(letter 
 
 /// Reads CIR, REX, REY, ELX or ELY: "CIR [OBS|HOL|EDG] [L'label'] value".
 void read_aperture(std::string const& command, PrescriptionLine const& line, double unit, SeqSurface& seq,
-                   std::vector<std::string>& warnings) {
+                   Warnings& warnings) {
   std::string kind;
   for (std::size_t i = 1; i + 1 < line.size(); ++i) {
     std::string const word = upper_case(line[i]);
@@ -31,8 +31,9 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
   if (kind == "EDG") return;  // edges are for drawings only
   double const value = line.number_or_infinity(line.size() - 1) * unit;
   if (kind == "HOL") {
-    warnings.push_back(fmt::format("{}: {} HOL: light that meets the hole counts as lost, as behind an obscuration",
-                                   line.where, command));
+    warnings.push_back(
+        {WarningCode::approximated, line.where,
+         fmt::format("{} HOL: light that meets the hole counts as lost, as behind an obscuration", command)});
   }
   bool const blocks = kind == "OBS" || kind == "HOL";
   if (value == 0 && blocks) return;
@@ -80,7 +81,7 @@ std::vector<CoordinateBreak> SeqSurface::breaks_behind() const {
 }
 
 bool read_seq_surface(std::string const& command, PrescriptionLine const& line, double unit, bool is_image,
-                      SeqSurface& seq, std::vector<std::string>& warnings) {
+                      SeqSurface& seq, Warnings& warnings) {
   static std::set<std::string> const apertures{"CIR", "REX", "REY", "ELX", "ELY"};
   static std::set<std::string> const decentres{"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"};
   PrescribedSurface& surface = seq.surface;
@@ -106,7 +107,7 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
     (command == "ADX" ? seq.centre.x : seq.centre.y) = line.number(line.size() - 1) * unit;
   } else if (command == "ARO") {
     if (line.number(line.size() - 1) != 0) {
-      warnings.push_back(line.where + ": ARO: the rotation of an aperture is not traced");
+      warnings.push_back({WarningCode::ignored, line.where, "ARO: the rotation of an aperture is not traced"});
     }
   } else if (command == "DAR") {
     seq.kind = SeqSurface::Decentre::ret;
@@ -129,7 +130,7 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
   return true;
 }
 
-void finish_seq_surface(SeqSurface& seq, double unit, std::vector<std::string>& warnings) {
+void finish_seq_surface(SeqSurface& seq, double unit, Warnings& warnings) {
   PrescribedSurface& surface = seq.surface;
   while (!seq.asphere.empty() && seq.asphere.back() == 0) seq.asphere.pop_back();
   constexpr std::size_t terms = EvenAsphere<double>::terms;
@@ -150,8 +151,8 @@ void finish_seq_surface(SeqSurface& seq, double unit, std::vector<std::string>& 
     if (surface.outline.kind == Outline::Kind::none) {
       surface.outline = {Outline::Kind::ellipse, blocks, {radius, radius}, seq.centre};
     } else {
-      warnings.push_back(surface.where +
-                         ": of several decentred apertures on a surface only one is traced; the others block no light");
+      warnings.push_back({WarningCode::ignored, surface.where,
+                          "of several decentred apertures on a surface only one is traced; the others block no light"});
     }
   };
   if (std::isfinite(surface.semi_diameter)) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/optics/prescription.h"
 #include "render/optics/prescription_readers/lines.h"
 
@@ -39,9 +40,9 @@ struct SeqSurface {
 /// @return false if it is not such a command
 /// @throws DataError
 bool read_seq_surface(std::string const& command, PrescriptionLine const& line, double unit, bool is_image,
-                      SeqSurface& seq, std::vector<std::string>& warnings);
+                      SeqSurface& seq, Warnings& warnings);
 
 /// Stores aspheric terms and apertures in the surface. @param unit  unit of length [m]
-void finish_seq_surface(SeqSurface& seq, double unit, std::vector<std::string>& warnings);
+void finish_seq_surface(SeqSurface& seq, double unit, Warnings& warnings);
 
 }  // namespace gladstone

@@ -14,7 +14,7 @@ namespace {
 /// Warns that a command has no effect, unless all its numbers are 0.
 void note_unless_zero(PrescriptionLine const& line, char const* what, Prescription& result) {
   if (line.has_nonzero_number())
-    result.warnings.push_back(fmt::format("{}: {}: {}", line.where, upper_case(line[0]), what));
+    result.warnings.push_back({WarningCode::ignored, line.where, fmt::format("{}: {}", upper_case(line[0]), what)});
 }
 
 /// Reads field angles in the y-z plane; other fields cause a warning. @return false if it is not a field command
@@ -67,13 +67,14 @@ bool read_seq_commands(std::string const& command, PrescriptionLine const& line,
   } else if (command == "TEM" || command == "PRE") {
     double const standard = command == "TEM" ? 20 : 760;  // [degC], [mmHg]
     if (line.size() > 1 && line.number(1) != standard) {
-      result.warnings.push_back(
-          fmt::format("{}: {}: indices are not adjusted to the temperature or pressure; the catalogue's indices, at "
-                      "20 degrees C and 760 mmHg, are used",
-                      line.where, command));
+      result.warnings.push_back({WarningCode::ignored, line.where,
+                                 fmt::format("{}: indices are not adjusted to the temperature or pressure; the "
+                                             "catalogue's indices, at 20 degrees C and 760 mmHg, are used",
+                                             command)});
     }
   } else if (command == "ZOO") {
-    result.warnings.push_back(line.where + ": ZOO: only the zoom position stored in the surfaces is read");
+    result.warnings.push_back(
+        {WarningCode::ignored, line.where, "ZOO: only the zoom position stored in the surfaces is read"});
   } else {
     return false;
   }

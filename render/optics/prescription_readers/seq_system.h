@@ -13,7 +13,7 @@ struct SeqSystem {
   double unit = 1e-3;       ///< unit of length [m]
   double pupil = 0;         ///< diameter of the entrance pupil [unit]
   bool radii = false;       ///< surfaces have radii (RDM), not curvatures
-  bool radii_said = false;  ///< the file says which of the two
+  bool radii_said = false;  ///< the file states whether surfaces have radii or curvatures
   std::vector<ListedWavelength> wavelengths;
   int reference = 0;                  ///< number of the reference wavelength, from 1; 0: not set
   std::string private_glasses_where;  ///< line of PRV while its block is read

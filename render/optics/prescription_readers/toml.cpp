@@ -1,6 +1,8 @@
 #include <cmath>
+#include <filesystem>
 
 #include "render/base/units.h"
+#include "render/files/text_file.h"
 #include "render/optics/even_asphere.h"
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
@@ -80,7 +82,9 @@ PrescribedSurface read_surface(SetupTable& table) {
 }  // namespace
 
 Prescription read_toml_prescription(std::string const& path) {
-  SetupDocument document = SetupDocument::from_file(path);
+  std::string const folder = std::filesystem::absolute(path).parent_path().string();
+  SetupDocument document =
+      SetupDocument::from_text(read_text_file(path, "a lens file", most_setup_bytes), path, folder);
   SetupTable root = document.root();
   Prescription result;
   result.file = path;

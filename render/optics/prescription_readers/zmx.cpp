@@ -74,8 +74,8 @@ class ZmxReader {
   /// Warns that the file ends within a line DISZ, and may be truncated.
   void note_end(PrescriptionLine const& line) {
     result_.warnings.push_back(
-        line.where +
-        ": the file ends within its line DISZ, without a line end; if it was cut short there, copy it again");
+        {WarningCode::incomplete, line.where,
+         "the file ends within its line DISZ, without a line end; if it was cut short there, copy it again"});
   }
 
   Prescription finish() {
@@ -105,7 +105,7 @@ class ZmxReader {
     take_surfaces();
     assume_stop(result_);
     assume_aperture(result_, "ENPD, FNUM, OBNA");
-    std::vector<std::string> const notes = notes_.warnings();
+    Warnings const notes = notes_.warnings();
     result_.warnings.insert(result_.warnings.end(), notes.begin(), notes.end());
     return std::move(result_);
   }
@@ -132,7 +132,8 @@ class ZmxReader {
     }
     PrescribedSurface const& image = surfaces_.back().surface;
     if (image.curvature != 0) {
-      result_.warnings.push_back(image.where + ": the image is curved; the lens is evaluated on a plane");
+      result_.warnings.push_back(
+          {WarningCode::ignored, image.where, "the image is curved; the lens is evaluated on a plane"});
     }
     break_before_image(result_, std::move(breaks), image.where);
   }
@@ -148,15 +149,18 @@ class ZmxReader {
   void note_commas() {
     if (comma_lines_.empty()) return;
     result_.warnings.push_back(
-        fmt::format("{}: numbers with a comma, such as \"{}\", are read with a decimal point (lines of this kind: {})",
-                    comma_lines_.front(), first_comma_, comma_lines_.size()));
+        {WarningCode::assumed, comma_lines_.front(),
+         fmt::format("numbers with a comma, such as \"{}\", are read with a decimal point (lines of this kind: {})",
+                     first_comma_, comma_lines_.size())});
   }
 
   /// Checks the numbers of the surfaces. Surfaces are read in the order of the file if their numbers increase, with a
-  /// warning if they are not consecutive, or if they decrease to 1, as in files of lenses turned round by hand. Adds
-  /// the object if the file omits it. @throws DataError for any other order
+  /// warning if they are not consecutive, or if they decrease to 1, as in files of lenses reversed by hand. Adds the
+  /// object if the file omits it.
+  /// @throws DataError for any other order
   void check_order() {
-    constexpr std::size_t fewest_reversed = 3;  // two exchanged surfaces may be an error
+    constexpr std::size_t fewest_reversed = 3;  // fewer surfaces whose numbers decrease may just have been exchanged by
+                                                // mistake
     auto const find_fault = [this](auto const& compare) {
       return std::adjacent_find(numbers_.begin(), numbers_.end(),
                                 [&](auto const& a, auto const& b) { return !compare(a, b); });
@@ -173,8 +177,9 @@ class ZmxReader {
     }
     if (reversed) {
       result_.warnings.push_back(
-          fmt::format("{}: the surfaces are numbered backwards, from {} to 1; they are read in the order of the file",
-                      first, surfaces_.front().label));
+          {WarningCode::assumed, first,
+           fmt::format("the surfaces are numbered backwards, from {} to 1; they are read in the order of the file",
+                       surfaces_.front().label)});
     } else {
       if (numbers_.front().number != 0 && numbers_.front().number != 1) {
         throw DataError(
@@ -197,18 +202,18 @@ class ZmxReader {
       steps.push_back(fmt::format("{} after {}", surfaces_[i].label, surfaces_[i - 1].label));
     }
     if (steps.empty()) return;
-    result_.warnings.push_back(
-        fmt::format("{}: surfaces are not numbered consecutively ({}); they are read in the order of the file; check "
-                    "that no surface is missing",
-                    where, fmt::join(steps, ", ")));
+    result_.warnings.push_back({WarningCode::assumed, where,
+                                fmt::format("surfaces are not numbered consecutively ({}); they are read in the order "
+                                            "of the file; check that no surface is missing",
+                                            fmt::join(steps, ", "))});
   }
 
   /// Assumes an object at infinity if the file contains the surfaces of the lens only.
   void assume_object(std::string const& where) {
     object_assumed_ = true;
-    result_.warnings.push_back(where +
-                               ": the file has no surface 0, the object, which is taken at infinity; its last "
-                               "surface is the image only if it has no thickness");
+    result_.warnings.push_back({WarningCode::assumed, where,
+                                "the file has no surface 0, the object, which is taken at infinity; its last surface "
+                                "is the image only if it has no thickness"});
     ZmxSurface object;
     object.surface.where = where;
     object.surface.thickness = HUGE_VAL;
@@ -238,7 +243,7 @@ class ZmxReader {
   Prescription result_;
   ZmxSystem system_;
   std::vector<ZmxSurface> surfaces_;
-  std::vector<SurfaceNumber> numbers_;  // of the surfaces in the file
+  std::vector<SurfaceNumber> numbers_;  // numbers of the surfaces in the file
   std::vector<std::string> comma_lines_;
   std::string first_comma_;  // first number with a decimal comma
   ZmxNotes notes_;

@@ -37,12 +37,12 @@ Outline outline_of(PrescriptionLine const& line, double unit, Outline::Kind kind
 
 }  // namespace
 
-bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& apertures,
-                       std::vector<std::string>& warnings) {
+bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& apertures, Warnings& warnings) {
   std::string const& key = line[0];
   if (key == "SPID" || key == "UDAP" || key == "UDOB") {
-    warnings.push_back(fmt::format("{}: {}: {} not traced and do not block light", line.where, key,
-                                   key == "SPID" ? "spiders are" : "user-defined shapes are"));
+    warnings.push_back({WarningCode::ignored, line.where,
+                        fmt::format("{}: {} not traced and do not block light", key,
+                                    key == "SPID" ? "spiders are" : "user-defined shapes are")});
     return true;
   }
   if (key == "OBDC") {
@@ -73,8 +73,10 @@ bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& 
   return true;
 }
 
-void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, std::vector<std::string>& warnings) {
-  auto const warn = [&](std::string const& text) { warnings.push_back(apertures.where + ": " + text); };
+void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, Warnings& warnings) {
+  auto const warn = [&](WarningCode code, std::string const& text) {
+    warnings.push_back({code, apertures.where, text});
+  };
   Vec2d const centre = apertures.centre;
   double disc = apertures.disc, largest = 0;
   if (apertures.aperture) {
@@ -83,10 +85,12 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
     surface.obscured_without_end = disc > 0 && std::isinf(largest);
   }
   if (auto const& ring = apertures.obscured_ring) {
-    if (ring->largest >= surface.semi_diameter) {  // the ring leaves a circular aperture
+    // the obscured ring reaches the rim: only the disc within its inner radius remains open
+    if (ring->largest >= surface.semi_diameter) {
       largest = largest > 0 ? std::min(largest, ring->least) : ring->least;
     } else {
-      warn("OBSC: a ring-shaped obscuration within the surface is not traced and blocks no light");
+      warn(WarningCode::ignored,
+           "OBSC: a ring-shaped obscuration within the surface is not traced and blocks no light");
     }
   }
   surface.outline = apertures.outline;
@@ -95,7 +99,8 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
   // represent circles off the axis as ellipses
   auto const as_outline = [&](double radius, bool blocks) {
     if (surface.outline.kind != Outline::Kind::none) {
-      warn("of several decentred apertures on a surface only one is traced; the others block no light");
+      warn(WarningCode::ignored,
+           "of several decentred apertures on a surface only one is traced; the others block no light");
     } else {
       surface.outline = {Outline::Kind::ellipse, blocks, {radius, radius}, centre};
     }
@@ -122,16 +127,16 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
   double const blocked = off_axis ? 0 : disc;
   if (edge && blocked > 0 && blocked >= surface.semi_diameter) {
     surface.semi_diameter_vignettes = false;
-    warn(fmt::format(
-        "the opaque disc is as large as the surface, whose semi-diameter is {:.6g} mm, so that no light would "
-        "pass; the semi-diameter is taken as that of the disc alone, and light outside it passes (to limit that "
-        "light, add an aperture, CLAP)",
-        surface.semi_diameter / unit::millimetre));
+    warn(WarningCode::assumed,
+         fmt::format("the opaque disc is as large as the surface, whose semi-diameter is {:.6g} mm, so that no light "
+                     "would pass; the semi-diameter is taken as that of the disc alone, and light outside it passes "
+                     "(to limit that light, add an aperture, CLAP)",
+                     surface.semi_diameter / unit::millimetre));
   }
 }
 
-void ZmxNotes::note(std::string const& key, std::string const& text) {
-  if (keys_.insert(key).second) notes_.push_back(text);
+void ZmxNotes::note(std::string const& key, std::string const& where, std::string const& text) {
+  if (keys_.insert(key).second) notes_.push_back({WarningCode::ignored, where, text});
 }
 
 void ZmxNotes::read(PrescriptionLine const& line) {
@@ -139,21 +144,21 @@ void ZmxNotes::read(PrescriptionLine const& line) {
   static std::set<std::string> const vignetting{"VDXN", "VDYN", "VCXN", "VCYN", "VANN", "VDXD", "VDYD", "VCXD", "VCYD"};
   if (vignetting.contains(key)) {
     if (!line.has_nonzero_number()) return;
-    note("vignetting",
-         fmt::format("{}: {}: vignetting factors are not used; the edges of the surfaces vignette", line.where, key));
+    note("vignetting", line.where, key + ": vignetting factors are not used; the edges of the surfaces vignette");
   } else if (key == "COAT") {
-    note(key, line.where + ": COAT: coatings are ignored; surfaces transmit all light");
+    note(key, line.where, "COAT: coatings are ignored; surfaces transmit all light");
   } else if (key == "MNUM") {
     if (line.size() > 1 && line[1] != "1") {
-      note(key, fmt::format("{}: MNUM: of {} configurations, only the one stored in the surfaces is read", line.where,
-                            line[1].substr(0, 40)));
+      note(key, line.where,
+           fmt::format("MNUM: of {} configurations, only the one stored in the surfaces is read",
+                       line[1].substr(0, 40)));
     }
   } else if (key == "ENVD") {
     // temperature, pressure, and flag: adjust indices to them
     if (line.size() > 3 && line[3] != "0" && (line.number(1) != 20 || line.number(2) != 1)) {
-      note(key, line.where +
-                    ": ENVD: indices are not adjusted to an environment; those of the catalogue are used, at 20 "
-                    "degrees and 1 atmosphere");
+      note(key, line.where,
+           "ENVD: indices are not adjusted to an environment; those of the catalogue are used, at 20 "
+           "degrees and 1 atmosphere");
     }
   } else if (!is_harmless(key) && keys_.insert(key).second) {
     if (unknown_.empty()) unknown_where_ = line.where;
@@ -161,13 +166,14 @@ void ZmxNotes::read(PrescriptionLine const& line) {
   }
 }
 
-std::vector<std::string> ZmxNotes::warnings() const {
-  std::vector<std::string> all = notes_;
+Warnings ZmxNotes::warnings() const {
+  Warnings all = notes_;
   if (!unknown_.empty()) {
     bool const one = unknown_.size() == 1;
-    all.push_back(fmt::format("{}: {} {} {} unknown and {} ignored; check that {} not change the lens", unknown_where_,
-                              one ? "operand" : "operands", fmt::join(unknown_, ", "), one ? "is" : "are",
-                              one ? "was" : "were", one ? "it does" : "they do"));
+    all.push_back({WarningCode::ignored, unknown_where_,
+                   fmt::format("{} {} {} unknown and {} ignored; check that {} not change the lens",
+                               one ? "operand" : "operands", fmt::join(unknown_, ", "), one ? "is" : "are",
+                               one ? "was" : "were", one ? "it does" : "they do")});
   }
   return all;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/optics/prescription.h"
 #include "render/optics/prescription_readers/lines.h"
 
@@ -15,7 +16,7 @@ struct ZmxApertures {
   struct Ring {
     double least = 0, largest = 0;
   };
-  std::string where;  ///< location of the last of these lines
+  std::string where;  ///< location of the last aperture line
   std::optional<Ring> aperture;
   double disc = 0;  ///< radius of a circular obscuration
   std::optional<Ring> obscured_ring;
@@ -29,12 +30,11 @@ struct ZmxApertures {
 /// @param unit  unit of length [m]
 /// @return false if the line is not such an operand
 /// @throws DataError
-bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& apertures,
-                       std::vector<std::string>& warnings);
+bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& apertures, Warnings& warnings);
 
 /// Stores the apertures in the surface, whose semi-diameter has been read before. If an obscuration is as large as the
 /// semi-diameter, the latter is taken as the size of the obscuration only, and light passes outside.
-void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, std::vector<std::string>& warnings);
+void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, Warnings& warnings);
 
 /// Collects warnings about operands of a file that are not used.
 class ZmxNotes {
@@ -42,13 +42,13 @@ class ZmxNotes {
   /// Reads an operand, and adds a note if it is unknown or changes the amount of light only. @throws DataError
   void read(PrescriptionLine const& line);
   /// Returns the warnings, one for each kind.
-  std::vector<std::string> warnings() const;
+  Warnings warnings() const;
 
  private:
-  void note(std::string const& key, std::string const& text);
+  void note(std::string const& key, std::string const& where, std::string const& text);
 
   std::set<std::string> keys_;
-  std::vector<std::string> notes_;
+  Warnings notes_;
   std::vector<std::string> unknown_;  // unknown operands
   std::string unknown_where_;
 };

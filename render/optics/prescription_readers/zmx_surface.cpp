@@ -18,10 +18,10 @@ bool is_glass(double nd, double vd) { return is_index_relative_to_air(nd) && vd 
 
 /// Reads a model glass from a line GLAS: nd and Vd in its fifth and sixth word. A Vd of 0 denotes a glass without
 /// dispersion; that of a gas, whose nd is at most 1, is ignored.
-PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+PrescribedMedium model_glass(PrescriptionLine const& line, Warnings& warnings) {
   double const nd = line.number(4), vd = line.optional_number(5).value_or(0);
   if (nd == -1 && vd == 0) {
-    warnings.push_back(line.where + ": GLAS: an index of -1 is taken as a mirror");
+    warnings.push_back({WarningCode::assumed, line.where, "GLAS: an index of -1 is taken as a mirror"});
     return {PrescribedMedium::Mirror{}};
   }
   if (!is_glass(nd, vd)) {
@@ -33,12 +33,13 @@ PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::stri
   }
   if (line.size() > 5 && !line.optional_number(5)) {
     warnings.push_back(
-        fmt::format("{}: GLAS: the Vd of the model glass, \"{}\", is not a number; nd = {:.6g} is used "
-                    "at all wavelengths",
-                    line.where, line[5].substr(0, 40), nd));
+        {WarningCode::assumed, line.where,
+         fmt::format("GLAS: the Vd of the model glass, \"{}\", is not a number; nd = {:.6g} is used at all wavelengths",
+                     line[5].substr(0, 40), nd)});
   }
   if (line.optional_number(6).value_or(0) != 0) {
-    warnings.push_back(line.where + ": GLAS: the deviation of a model glass' partial dispersion is not used");
+    warnings.push_back(
+        {WarningCode::ignored, line.where, "GLAS: the deviation of a model glass' partial dispersion is not used"});
   }
   if (vd == 0 || nd <= 1) return {PrescribedMedium::Index{nd}};
   return {PrescribedMedium::Described{nd, vd}};
@@ -46,28 +47,28 @@ PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::stri
 
 /// Reads the name of a catalogue glass. "MAKER-FAMILY|NAME" is converted to "MAKER:NAME", or to NAME if the maker has
 /// no known catalogue, with a warning.
-std::string glass_name(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+std::string glass_name(PrescriptionLine const& line, Warnings& warnings) {
   std::string const& word = line[1];
   std::size_t const bar = word.find('|');
   if (bar == std::string::npos || bar + 1 == word.size()) return word;
   std::string const maker = glass_key(word.substr(0, word.find_first_of("-_|"))), glass = word.substr(bar + 1);
   bool const known = maker_rank(maker) < maker_rank("");
-  warnings.push_back(fmt::format("{}: GLAS: \"{}\" is read as glass {}{}", line.where, word.substr(0, 80), glass,
-                                 known ? " of " + maker : std::string()));
+  warnings.push_back({WarningCode::assumed, line.where,
+                      fmt::format("GLAS: \"{}\" is read as glass {}{}", word.substr(0, 80), glass,
+                                  known ? " of " + maker : std::string())});
   return known ? maker + ":" + glass : glass;
 }
 
 /// Reads a catalogue glass, with nd and Vd of the line as a fallback. 1.5 and 40 are ignored, since they are Zemax's
 /// default values.
-PrescribedMedium named_glass(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+PrescribedMedium named_glass(PrescriptionLine const& line, Warnings& warnings) {
   PrescribedMedium::Named named{glass_name(line, warnings), std::nullopt};
   if (line.size() > 5) {
     std::optional<double> const nd = line.optional_number(4), vd = line.optional_number(5);
     if (!nd || !vd) {
-      warnings.push_back(
-          fmt::format("{}: GLAS: nd and Vd of the line, \"{}\" and \"{}\", are not numbers and are "
-                      "ignored",
-                      line.where, line[4].substr(0, 40), line[5].substr(0, 40)));
+      warnings.push_back({WarningCode::ignored, line.where,
+                          fmt::format("GLAS: nd and Vd of the line, \"{}\" and \"{}\", are not numbers and are ignored",
+                                      line[4].substr(0, 40), line[5].substr(0, 40))});
     } else if (is_glass(*nd, *vd) && *nd > 1 && *vd > 0 && !(*nd == 1.5 && *vd == 40)) {
       named.otherwise = {*nd, *vd};
     }
@@ -75,7 +76,7 @@ PrescribedMedium named_glass(PrescriptionLine const& line, std::vector<std::stri
   return {named};
 }
 
-PrescribedMedium medium_of(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+PrescribedMedium medium_of(PrescriptionLine const& line, Warnings& warnings) {
   if (line.size() < 2) throw DataError(ErrorCode::syntax, line.where, "GLAS names no glass; the line is cut short");
   if (line[1] == "MIRROR") return {PrescribedMedium::Mirror{}};
   bool const blank = line[1] == "___BLANK";
@@ -115,8 +116,7 @@ PrescribedSurface::RadialTerms extended_terms(ZmxSurface const& zmx, double unit
 }
 
 /// Warns of parameters of an asphere beyond its eight terms, which Zemax ignores as well.
-void note_excess_terms(ZmxSurface const& zmx, std::vector<int> const& excess, double unit,
-                       std::vector<std::string>& warnings) {
+void note_excess_terms(ZmxSurface const& zmx, std::vector<int> const& excess, double unit, Warnings& warnings) {
   if (excess.empty()) return;
   double const height = zmx.surface.semi_diameter / unit;
   double sag = 0;
@@ -126,8 +126,9 @@ void note_excess_terms(ZmxSurface const& zmx, std::vector<int> const& excess, do
           ? fmt::format("; as a term of the asphere it would be a sag of {:.2g} mm at the semi-diameter",
                         sag * unit / unit::millimetre)
           : "";
-  warnings.push_back(fmt::format("{}: PARM: {} has 8 terms, parameter {} is ignored, as by Zemax{}", zmx.excess_where,
-                                 zmx.type, fmt::join(excess, ", "), effect));
+  warnings.push_back({WarningCode::ignored, zmx.excess_where,
+                      fmt::format("PARM: {} has 8 terms, parameter {} is ignored, as by Zemax{}", zmx.type,
+                                  fmt::join(excess, ", "), effect)});
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ double ZmxSurface::parameter(int i) const {
   return found == parameters.end() ? 0.0 : found->second;
 }
 
-void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx, std::vector<std::string>& warnings) {
+void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx, Warnings& warnings) {
   PrescribedSurface& surface = zmx.surface;
   std::string const& key = line[0];
   if (key == "TYPE") {
@@ -172,12 +173,13 @@ void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx
   }
 }
 
-PrescribedSurface shaped_surface(ZmxSurface const& zmx, double unit, std::vector<std::string>& warnings) {
+PrescribedSurface shaped_surface(ZmxSurface const& zmx, double unit, Warnings& warnings) {
   PrescribedSurface surface = zmx.surface;
   using Shape = PrescribedSurface::Shape;
   auto const no_extra_data = [&] {
     if (zmx.extra_where.empty()) return;
-    warnings.push_back(fmt::format("{}: XDAT: extra data of a surface {} are ignored", zmx.extra_where, zmx.type));
+    warnings.push_back(
+        {WarningCode::ignored, zmx.extra_where, fmt::format("XDAT: extra data of a surface {} are ignored", zmx.type)});
   };
   if (zmx.type == "STANDARD") {
     no_extra_data();

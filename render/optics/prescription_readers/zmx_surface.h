@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/optics/prescription.h"
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/zmx_apertures.h"
@@ -25,12 +26,12 @@ struct ZmxSurface {
 };
 
 /// Reads a line of the block. @param unit  unit of length [m] @throws DataError
-void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx, std::vector<std::string>& warnings);
+void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx, Warnings& warnings);
 
 /// Converts a block to a surface according to its type: STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, PARAXIAL,
 /// TILTSURF. EVENASPH and ODDASPHE have the eight terms of Zemax's manual; other parameters are ignored with a warning.
 /// @throws DataError for any other type
-PrescribedSurface shaped_surface(ZmxSurface const& zmx, double unit, std::vector<std::string>& warnings);
+PrescribedSurface shaped_surface(ZmxSurface const& zmx, double unit, Warnings& warnings);
 
 /// Converts a block of type COORDBRK to a coordinate break. @throws DataError if its thickness is infinite
 CoordinateBreak break_of(ZmxSurface const& zmx, double unit);

@@ -81,12 +81,12 @@ void take_zmx_fields(ZmxSystem const& system, Prescription& result) {
       std::any_of(system.fields.begin(), system.fields.end(), [](double angle) { return angle != 0; });
   if (system.heights_at.empty()) result.field_angles = system.fields;
   if (!system.heights_at.empty() && (any_along || !system.across_at.empty())) {
-    result.warnings.push_back(system.heights_at +
-                              ": FTYP: field heights are not supported, the lens is evaluated on its axis only; "
-                              "give field angles (FTYP 0)");
+    result.warnings.push_back(
+        {WarningCode::ignored, system.heights_at,
+         "FTYP: field heights are not supported, the lens is evaluated on its axis only; give field angles (FTYP 0)"});
   } else if (!system.across_at.empty()) {
-    result.warnings.push_back(system.across_at +
-                              ": XFLN: fields outside the y-z plane are ignored; give them along y (YFLN)");
+    result.warnings.push_back({WarningCode::ignored, system.across_at,
+                               "XFLN: fields outside the y-z plane are ignored; give them along y (YFLN)"});
   }
 }
 

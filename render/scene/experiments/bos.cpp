@@ -113,7 +113,7 @@ void cross_check_dot_count(Setup const& setup, SetupTable target) {
   }
 }
 
-void cross_check_bos(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+void cross_check_bos(Setup const& setup, SetupTable root, Warnings& warnings) {
   cross_check_medium(setup, root, warnings);
   cross_check_target(setup, root);
   if (setup.target.kind == TargetKind::dots) cross_check_dot_count(setup, root.table("target"));

@@ -25,7 +25,7 @@ void read_calibration(Setup& setup, SetupTable root) {
   refuse_piv_tables(setup, root);
 }
 
-void check_calibration(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+void check_calibration(Setup const& setup, SetupTable root, Warnings& warnings) {
   cross_check_noise(setup, warnings);
   cross_check_spot(setup, root);
   cross_check_calibration(setup, std::move(root), warnings);

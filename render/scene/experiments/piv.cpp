@@ -76,7 +76,7 @@ void read_piv(Setup& setup, SetupTable root) {
   if (setup.sequence) check_particle_sequence(setup, root);
 }
 
-void cross_check_piv(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+void cross_check_piv(Setup const& setup, SetupTable root, Warnings& warnings) {
   cross_check_medium(setup, root, warnings);
   cross_check_spot(setup, root);
   cross_check_particles(setup, std::move(root), warnings);

@@ -6,7 +6,7 @@ namespace {
 
 void cross_check_bos(CaseSetup& loaded) {
   cross_check_windows(loaded);
-  if (std::string advice = locking_advice(loaded.setup); !advice.empty()) loaded.warnings.push_back(std::move(advice));
+  if (auto const advice = locking_advice(loaded.setup)) loaded.warnings.push_back(*advice);
 }
 
 }  // namespace

@@ -51,13 +51,13 @@ void share_particles(std::vector<CameraCase>& cases, std::vector<Setup> const& r
   }
 }
 
-void warn_of_unsuitable_particles(Scene const& scene, std::vector<std::string>& warnings) {
-  for (auto const& text : warnings_of_particles(scene)) warn(warnings, text);
+void warn_of_unsuitable_particles(Scene const& scene, Warnings& warnings) {
+  warn(warnings, warnings_of_particles(scene));
 }
 
 void write_truth_of_particles(std::string const& path, Scene const& scene, Rendering const& rendering,
                               CaseOutcome const& /*outcome*/, FileOrigin const& origin) {
-  write_particle_truth(path, scene, rendering.truth, rendering.statuses, rendering.method, origin);
+  write_particle_truth(path, scene, rendering, origin);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "render/planning.h"
 #include "studies/case/case_warnings.h"
@@ -41,7 +42,7 @@ CaseWriter render_pair(CaseSetup& loaded, Renderer& renderer, ReusableParts cons
     entry.rays = static_cast<std::uint64_t>(*least);
     entry.most_rays = static_cast<std::uint64_t>(*most);
   }
-  entry.step_mm = finished->prepared.step.step_mm;
+  entry.step_mm = finished->prepared.plan.step_estimate.step_mm;
   entry.magnification = finished->prepared.scene.imaging.magnification;
   entry.exposure_e = finished->rendered.exposure_e;
   entry.seconds = finished->rendered.seconds;
@@ -58,22 +59,23 @@ ImageDiameters images_of_dots(Setup const& setup) {
 
 double number_of_dots(Scene const& scene) { return static_cast<double>(scene.dots.centre.size()); }
 
-void warn_of_dots_out_of_view(Scene const& scene, std::vector<std::string>& warnings) {
+void warn_of_dots_out_of_view(Scene const& scene, Warnings& warnings) {
   auto const in_view = [&scene](Vec2d centre) { return scene.in_view(centre); };
   if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
     warn(warnings,
-         fmt::format("none of the {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be "
-                     "empty; check the target's file (positions are in mm) or increase target.dots_per_32px_window",
-                     scene.dots.centre.size(),
-                     scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
-                     scene.setup.camera.rows * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
+         {WarningCode::out_of_view, "target",
+          fmt::format("none of the {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be "
+                      "empty; check the target's file (positions are in mm) or increase target.dots_per_32px_window",
+                      scene.dots.centre.size(),
+                      scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
+                      scene.setup.camera.rows * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3)});
   }
 }
 
 void write_dot_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
                      CaseOutcome const& outcome, FileOrigin const& origin) {
   constexpr int map_spacing_px = 2;  // turbulent fronts are a few pixels wide
-  write_truth(path, scene, rendering.truth, rendering.statuses, field_in_view(scene, map_spacing_px), rendering.method,
+  write_truth(path, scene, rendering, field_in_view(scene, rendering.plan, map_spacing_px),
               outcome.table_error ? &*outcome.table_error : nullptr, origin);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/base/warning.h"
 #include "studies/case/case_kind.h"
 
 /// Parts that several kinds of cases share.
@@ -15,7 +16,7 @@ CaseWriter render_pair(CaseSetup& loaded, Renderer& renderer, ReusableParts cons
 // Members of CaseKind for dots of a target:
 ImageDiameters images_of_dots(Setup const& setup);
 double number_of_dots(Scene const& scene);
-void warn_of_dots_out_of_view(Scene const& scene, std::vector<std::string>& warnings);
+void warn_of_dots_out_of_view(Scene const& scene, Warnings& warnings);
 void write_dot_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
                      CaseOutcome const& outcome, FileOrigin const& origin);
 nlohmann::json no_own_summary(Scene const& scene, GroundTruth const& truth, double exposure_e);

@@ -14,16 +14,17 @@ std::vector<BudgetStage> stages_from_eq9(Comparison const& comparison) {
           {"lens", comparison.point.displacement_px}};
 }
 
-PointTruth truth_of_dots(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px, TruthAt at) {
+PointTruth truth_of_dots(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                         std::vector<Vec2d> const& position_px, TruthAt at) {
   PointTruth truth;
-  truth.point = truth_at_points(scene, renderer, position_px, at, RenderTheory::yes);
-  truth.thin_lens = ideal_lens_truth(scene, renderer, truth.point);
+  truth.point = truth_at_points(scene, plan, renderer, position_px, at, RenderTheory::yes);
+  truth.thin_lens = ideal_lens_truth(scene, plan, renderer, truth.point);
   return truth;
 }
 
-GroundTruth dot_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px,
-                              TruthAt at) {
-  return truth_at_points(scene, renderer, position_px, at, RenderTheory::no);
+GroundTruth dot_displacements(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                              std::vector<Vec2d> const& position_px, TruthAt at) {
+  return truth_at_points(scene, plan, renderer, position_px, at, RenderTheory::no);
 }
 
 bool by_rays(Scene const& /*scene*/) { return false; }
@@ -34,14 +35,12 @@ constinit ComparisonKind const bos_comparison{
     .experiment = bos_experiment,
     .chain = BudgetChain::bos,
     .title = "BOS",
-    .references =
-        {{{.key = "eq9", .measures = "eq9", .name = "Eq. 9", .row = "Eq. 9", .against = "against Eq. 9", .of = eq9},
-          {.key = "eq9_cone",
-           .measures = "eq9_cone",
-           .name = "aperture-averaged Eq. 9",
-           .row = "aperture-averaged Eq. 9",
-           .against = "against aperture-averaged Eq. 9",
-           .of = eq9_of_cone}}},
+    .references = {{{.measures = "eq9", .name = "Eq. 9", .row = "Eq. 9", .against = "against Eq. 9", .of = eq9},
+                    {.measures = "eq9_cone",
+                     .name = "aperture-averaged Eq. 9",
+                     .row = "aperture-averaged Eq. 9",
+                     .against = "against aperture-averaged Eq. 9",
+                     .of = eq9_of_cone}}},
     .theory = "Eq. 9",
     .origin = "Eq. 9",
     .bias = "by Eq. 9",

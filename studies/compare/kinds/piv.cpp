@@ -11,9 +11,9 @@ std::vector<BudgetStage> stages_from_flow(Comparison const& comparison) {
   return {{"flow", comparison.flow_px}, {"ambient", comparison.ambient_px}, {"seen", comparison.point.displacement_px}};
 }
 
-PointTruth truth_of_particles(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px,
-                              TruthAt at) {
-  ParticlePoints points = particle_points(scene, renderer, position_px, at);
+PointTruth truth_of_particles(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
+                              std::vector<Vec2d> const& position_px, TruthAt at) {
+  ParticlePoints points = particle_points(scene, plan, renderer, position_px, at);
   return {std::move(points.seen), {}, std::move(points.flow_px), std::move(points.ambient_px)};
 }
 
@@ -23,14 +23,12 @@ constinit ComparisonKind const piv_comparison{
     .experiment = piv_experiment,
     .chain = BudgetChain::piv,
     .title = "PIV",
-    .references =
-        {{{.key = "flow", .measures = "flow", .name = "flow", .row = "flow", .against = "against the flow", .of = flow},
-          {.key = "ambient",
-           .measures = "ambient_truth",
-           .name = "without medium",
-           .row = "ray truth without medium",
-           .against = "against truth without medium",
-           .of = without_medium}}},
+    .references = {{{.measures = "flow", .name = "flow", .row = "flow", .against = "against the flow", .of = flow},
+                    {.measures = "ambient_truth",
+                     .name = "without medium",
+                     .row = "ray truth without medium",
+                     .against = "against truth without medium",
+                     .of = without_medium}}},
     .theory = "the displacement of the flow",
     .origin = "the flow",
     .bias = "of the flow",

@@ -14,7 +14,7 @@
 /// Manufactured density fields with known gradient, for the tests of analysis/density.
 namespace gladstone::density {
 
-/// Map of n x n nodes on the unit square with all nodes valid and gradient(x, y).
+/// Returns a map of n x n nodes on the unit square with the given gradient(x, y); all nodes are valid.
 template <class Gradient>
 GradientMap make_map(int n, Gradient const& gradient) {
   GradientMap map;
@@ -25,14 +25,15 @@ GradientMap make_map(int n, Gradient const& gradient) {
   return map;
 }
 
-/// Smooth field that is not symmetric and whose normal derivatives do not vanish at any border.
+/// Returns the density of a smooth field that is not symmetric and whose normal derivatives do not vanish at any
+/// border.
 inline double wave_density(Vec2d p) { return std::sin(3.0 * p.x + 1.0) * std::cos(2.0 * p.y - 0.4) + 0.3 * p.x * p.y; }
 inline Vec2d wave_gradient(Vec2d p) {
   return {3.0 * std::cos(3.0 * p.x + 1.0) * std::cos(2.0 * p.y - 0.4) + 0.3 * p.y,
           -2.0 * std::sin(3.0 * p.x + 1.0) * std::sin(2.0 * p.y - 0.4) + 0.3 * p.x};
 }
 
-/// Gaussian of width s at the centre of the unit square.
+/// Returns the density of a Gaussian of width s at the centre of the unit square.
 inline double blob_density(Vec2d p, double s = 0.15) {
   double const x = p.x - 0.5, y = p.y - 0.5;
   return std::exp(-(x * x + y * y) / (s * s));
@@ -41,7 +42,7 @@ inline Vec2d blob_gradient(Vec2d p, double s = 0.15) {
   return (-2.0 / (s * s) * blob_density(p, s)) * Vec2d{p.x - 0.5, p.y - 0.5};
 }
 
-/// Adds one random error with the map's sigma to a gradient.
+/// Returns a map whose gradient contains one random error with the standard deviation `sigma` of the map.
 inline GradientMap with_noise(GradientMap map, WindowCorrelation const& correlation, std::uint64_t seed) {
   std::vector<Vec2d> const noise = draw_gradient_error(correlation, map.sigma, seed, 0);
   for (std::size_t i = 0; i < noise.size(); ++i) map.gradient[i] += noise[i];

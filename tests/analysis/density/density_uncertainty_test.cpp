@@ -92,12 +92,12 @@ TEST(DensityUncertainty, CoversTheErrorsOfCorrelatedNoise) {
   for (double overlap : {0.0, 0.5, 0.75}) {
     WindowOverlap const windows = WindowOverlap::from_fraction(overlap);
     WindowCorrelation const correlation(n, n, windows);
-    for (IntegrationMethod method : {IntegrationMethod::weighted_least_squares, IntegrationMethod::poisson}) {
+    for (std::string const method : {"wls", "poisson"}) {
       DensityIntegrator const integrator(clean, zero_left_side(clean.grid), {method});
       DensityUncertainty const result = propagate_uncertainty(integrator, clean.sigma, windows);
       DensityUncertainty const independent = propagate_uncertainty(integrator, clean.sigma, {});
       std::vector<double> const truth = integrator.integrate(clean.gradient);
-      std::uint64_t const fields = method == IntegrationMethod::poisson ? 300 : 30;
+      std::uint64_t const fields = method == "poisson" ? 300 : 30;
       double within = 0.0, within_independent = 0.0, count = 0.0;
       for (std::uint64_t seed = 1; seed <= fields; ++seed) {
         std::vector<double> const density = integrator.integrate(with_noise(clean, correlation, seed).gradient);
@@ -159,7 +159,7 @@ TEST(DensityUncertainty, IsReducedByTheWeights) {
   WindowOverlap const windows = WindowOverlap::from_fraction(0.5);
   WindowCorrelation const correlation(n, n, windows);
   DensityIntegrator const weighted(clean, zero_left_side(clean.grid));
-  DensityIntegrator const poisson(clean, zero_left_side(clean.grid), {IntegrationMethod::poisson});
+  DensityIntegrator const poisson(clean, zero_left_side(clean.grid), {"poisson"});
   double weighted_sum = 0.0, poisson_sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     std::vector<Vec2d> const noise = draw_gradient_error(correlation, clean.sigma, seed, 7);

@@ -246,7 +246,7 @@ TEST(StereoReconstruction, HasNoVectorNextToMissingOnes) {
     }
     if (length(field.grid.position(i)) < 9e-3 && !field.nodes[i]) ++missing;
   }
-  EXPECT_EQ(missing, 1u) << "bilinear interpolation beside the gap";
+  EXPECT_EQ(missing, 1u) << "bilinear interpolation next to the gap";
 }
 
 // Nodes about the origin at the mean distance of the vectors: 1.6 mm along Y and 1.6 mm / cos 45 along X.

@@ -16,7 +16,7 @@ double dot_product(std::vector<double> const& a, std::vector<double> const& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Oblique lines through and beside a volume, from a pupil 0.4 m in front of it.
+/// Oblique lines, some of which cross a volume and some of which miss it, from a pupil 0.4 m in front of it.
 std::vector<SightLine> make_fan() {
   std::vector<SightLine> lines;
   Vec3d const pupil{0.05, -0.02, 0.4};
@@ -158,8 +158,8 @@ TEST(LineProjector, GatheringAtANodeEqualsTheBackProjection) {
         for (std::size_t line = 0; line < lines.size(); ++line)
           visit_node(shape, lines[line], LineSamples::of(shape, lines[line]), at,
                      [&](double weight) { gathered.add(weight, values[line]); });
-        // The same products in the same order, up to the rounding of fused operations: fewer than 40 contributions,
-        // each with 1e-16 of the sum
+        // Both sums add the same products in the same order, up to the rounding of fused operations: fewer than 40
+        // contributions, each with 1e-16 of the sum
         ASSERT_NEAR(gathered.value, scattered[node].value, 5e-15 * scattered[node].weight) << node;
         ASSERT_NEAR(gathered.weight, scattered[node].weight, 5e-15 * scattered[node].weight) << node;
         seen += gathered.weight > 0.0 ? 1 : 0;

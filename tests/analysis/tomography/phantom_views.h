@@ -7,13 +7,13 @@
 
 namespace gladstone::tomography {
 
-/// Cube of the given width about the origin [m].
+/// Returns the grid of a cube of the given width about the origin [m].
 inline RegularGrid make_cube(int nodes, double width) {
   double const spacing = width / (nodes - 1);
   return {{nodes, nodes, nodes}, {spacing, spacing, spacing}, {-0.5 * width, -0.5 * width, -0.5 * width}};
 }
 
-/// Calls body(position) for each node, in the order of storage.
+/// Calls body(position) for each node, in the order in which nodes are stored.
 template <class Body>
 void visit_cube(RegularGrid const& grid, Body const& body) {
   for (int k = 0; k < grid.nodes[2]; ++k)
@@ -22,14 +22,14 @@ void visit_cube(RegularGrid const& grid, Body const& body) {
         body(grid.origin + Vec3d{i * grid.spacing.x, j * grid.spacing.y, k * grid.spacing.z});
 }
 
-/// exp(-|p - centre|^2 / radius^2) at the nodes.
+/// Returns the Gaussian exp(-|p - centre|^2 / radius^2) at the nodes.
 inline std::vector<double> sample_blob(RegularGrid const& grid, double radius, Vec3d centre = {}) {
   std::vector<double> values;
   visit_cube(grid, [&](Vec3d p) { values.push_back(std::exp(-dot(p - centre, p - centre) / (radius * radius))); });
   return values;
 }
 
-/// Parallel views of a Gaussian blob, at equal angles about Y over 180 degrees, with its exact line integrals.
+/// Returns parallel views of a Gaussian blob, at equal angles about Y over 180 degrees, with its exact line integrals.
 inline std::vector<ProjectedView> view_blob(int views, int across, double width, double radius, Vec3d centre = {}) {
   std::vector<ProjectedView> all;
   double const spacing = width / (across - 1);

@@ -155,7 +155,7 @@ TEST(VolumeReconstruction, LinesBesideTheVolumeAreReported) {
   EXPECT_GT(reconstruct_volume(views, half, quick_settings()).outside, 0.5);
 }
 
-/// Two blobs of different size beside the axis, in parallel views with normal noise relative to the largest integral.
+/// Two off-axis blobs of different size, in parallel views with normal noise relative to the largest integral.
 std::vector<ProjectedView> view_two_blobs(int views, double noise) {
   auto all = view_blob(views, nodes, width, radius, {2.5e-3, 1.5e-3, -2e-3});
   auto const second = view_blob(views, nodes, width, 0.6 * radius, {-4e-3, -2e-3, 1e-3});

@@ -30,7 +30,7 @@ ParticlePair const& particle_pair(int size) {
   return made.back().second;
 }
 
-/// A pair on the device.
+/// Image pair in the memory of the device.
 struct DevicePairOfImages {
   explicit DevicePairOfImages(int wanted)
       : size(wanted),
@@ -54,8 +54,10 @@ void set_rate(benchmark::State& state, std::size_t vectors) {
       benchmark::Counter(static_cast<double>(vectors), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// From window to subpixel shift alone: two launches, 4096 x 4096 px, windows 1/4 of their size apart.
-/// @param range(0) nominal window [px] @param range(1) 1: the kernel of its support alone; 0: by factors
+/// Measures only the kernels that convert windows to subpixel shifts: two launches, 4096 x 4096 px, windows at
+/// distances of a quarter of their size.
+/// @param range(0) nominal window [px] @param range(1) 1: the kernel specialised for this size; 0: the kernel that
+///                 transforms by factors
 void correlate_windows(benchmark::State& state, WindowWeighting weighting) {
   if (no_device(state)) return;
   DevicePairOfImages const images(4096);
@@ -130,7 +132,7 @@ BENCHMARK_CAPTURE(correlate_windows, gaussian, WindowWeighting::gaussian)
     ->Repetitions(3)
     ->Unit(benchmark::kMillisecond);
 
-/// Images on the device to vectors on the host, memory kept from the pair before.
+/// Measures the time from images on the device to vectors on the host; the memory of the previous pair is reused.
 void correlate(benchmark::State& state, CorrelationSettings const& settings, int size) {
   if (no_device(state)) return;
   DevicePairOfImages const images(size);
@@ -160,7 +162,8 @@ BENCHMARK(single_pass)
     ->Iterations(10)
     ->Unit(benchmark::kMillisecond);
 
-/// The demo's passes. @param range(0) side of the images [px] @param range(1) 1: with correlation statistics
+/// Measures the correlation with the passes of the demo. @param range(0) side of the images [px] @param range(1) 1:
+/// with correlation statistics
 void multi_pass(benchmark::State& state) {
   CorrelationSettings settings;
   if (state.range(1) != 0) settings.uncertainty = "correlation_statistics";
@@ -178,7 +181,8 @@ BENCHMARK(multi_pass)
     ->Repetitions(3)
     ->Unit(benchmark::kMillisecond);
 
-/// Images on the device to vectors on the device, a pair of a batch. @param range(0) side of the images [px]
+/// Measures the time from images on the device to vectors on the device, for one pair of a batch. @param range(0) side
+/// of the images [px]
 /// @param range(1) 1: with correlation statistics
 void batch(benchmark::State& state) {
   if (no_device(state)) return;

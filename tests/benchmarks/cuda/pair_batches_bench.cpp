@@ -10,7 +10,7 @@
 namespace gladstone::bench {
 namespace {
 
-/// Square pairs with a flow that differs between the particles.
+/// Returns the setup of square pairs with a non-uniform flow.
 Setup square_pair(ParticleScattering scattering, int side) {
   Setup setup = test::pair_setup(scattering, side, side);
   setup.piv->flow.flow.kind = TaylorGreenFlow{10, 2 * 3.14159265358979 / 10e-3, {}};
@@ -67,7 +67,8 @@ BENCHMARK(pair_batches)
     ->Iterations(30)
     ->Unit(benchmark::kMillisecond);
 
-/// Pairs through an ideal lens, with the light that particles scatter towards it and their defocus in closed form.
+/// Renders pairs through an ideal lens, with the light that particles scatter towards the lens, and with their defocus
+/// in closed form.
 void lens_pair_batches(benchmark::State& state, ParticleScattering scattering) { render_batches(state, scattering); }
 void set_lens_arguments(benchmark::internal::Benchmark* lens_pairs) {
   lens_pairs->ArgNames({"side", "pairs", "noise", "own_setup"})

@@ -12,8 +12,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// Returns the setup of droplets of about 1 um, all of different diameters, in a laser sheet 750 mm before the lens at
-/// f/11, 1024 x 1024 px of 6.5 um, which see 41 mm.
+/// Returns the setup of droplets of about 1 um, all of different diameters, in a laser sheet 750 mm in front of the
+/// lens at f/11; 1024 x 1024 px of 6.5 um, whose view is 41 mm wide.
 Setup droplets_setup(Setup setup, double sheet) {
   setup.camera.columns = setup.camera.rows = 1024;
   setup.camera.pixel_pitch = 6.5e-6;
@@ -31,25 +31,27 @@ Setup droplets_setup(Setup setup, double sheet) {
 }
 
 /// @param rays of a particle; 0: what accuracy takes
-Scene droplets_scene(Setup const& setup, std::uint64_t rays) {
-  Scene scene = build_scene(setup);
-  scene = with_step(scene, determine_step_by_tracing(scene));
-  if (rays == 0) scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
-  if (rays > 0) scene.rays_per_dot = rays;
+PlannedScene droplets_scene(Setup const& setup, std::uint64_t rays) {
+  PlannedScene scene(build_scene(setup));
+  plan_step(scene);
+  if (rays == 0) scene.plan = plan_rays_by_tracing(scene, scene.plan);
+  if (rays > 0) scene.plan.rays = rays;
   return scene;
 }
 
 /// Renders a pair again and again, and says how many rays particles take. @return the median time [s]
-double seconds_a_pair(benchmark::State& state, Scene const& scene, RenderImages images) {
+double seconds_a_pair(benchmark::State& state, PlannedScene const& scene, RenderImages images) {
   auto const renderer = cuda::make_rays_renderer();
-  Rendering const first = renderer->render_particles(scene, scene.particles, ParticleLight::scattered, images);
+  Rendering const first =
+      renderer->render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered, images);
   std::vector<std::int64_t> const& rays = first.truth.rays_planned;
   state.counters["rays"] = static_cast<double>(first.rays) / static_cast<double>(frame_count * rays.size());
   state.counters["most_rays"] = static_cast<double>(*std::max_element(rays.begin(), rays.end()));
   std::vector<double> seconds;
   for (auto _ : state) {
     auto const start = std::chrono::steady_clock::now();
-    Rendering const rendering = renderer->render_particles(scene, scene.particles, ParticleLight::scattered, images);
+    Rendering const rendering =
+        renderer->render_particles(scene, scene.plan, scene.particles, ParticleLight::scattered, images);
     benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     state.SetIterationTime(seconds.back());
@@ -66,14 +68,14 @@ bool has_device(benchmark::State& state) {
   return device.usable;
 }
 
-/// The seed's tomographic case: 1e5 droplets in a volume 10 mm deep through the double Gauss, Mie scattering. One ray
-/// is one ray in one frame.
+/// Renders a tomographic case: 1e5 droplets in a volume 10 mm deep, seen through the double Gauss, with Mie scattering.
+/// Rays are counted in each frame.
 void particles_tomographic(benchmark::State& state) {
   if (!has_device(state)) return;
   Setup setup = droplets_setup(double_gauss_setup(), 10e-3);
   setup.piv->laser.profile = SheetProfile::top_hat;
   setup.piv->particles.amount = 100000;
-  Scene scene = droplets_scene(setup, static_cast<std::uint64_t>(state.range(0)));
+  PlannedScene scene = droplets_scene(setup, static_cast<std::uint64_t>(state.range(0)));
   double const seconds = seconds_a_pair(state, scene, RenderImages::in_place);
   state.counters["ms_a_frame"] = 1e3 * seconds / frame_count;
   state.counters["Grays/s"] =
@@ -87,14 +89,15 @@ BENCHMARK(particles_tomographic)
     ->Iterations(3)
     ->Unit(benchmark::kMillisecond);
 
-/// Pairs of 1 Mpx with 0.05 particles a pixel in a sheet of 1 mm through an ideal lens, as many rays as accuracy takes.
+/// Renders pairs of 1 Mpx with 0.05 particles per pixel in a sheet of 1 mm through an ideal lens, with as many rays as
+/// the accuracy requires.
 void particle_pairs(benchmark::State& state, ParticleScattering scattering, RenderImages images) {
   if (!has_device(state)) return;
   Setup setup = droplets_setup({}, 1e-3);
   setup.piv->particles.count = ParticleCount::per_pixel;
   setup.piv->particles.amount = 0.05;
   setup.piv->particles.scattering = scattering;
-  Scene scene = droplets_scene(setup, 0);
+  PlannedScene scene = droplets_scene(setup, 0);
   state.counters["pairs/s"] = 1 / seconds_a_pair(state, scene, images);
   state.counters["particles"] = static_cast<double>(scene.particles.size());
 }

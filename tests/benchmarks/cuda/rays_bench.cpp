@@ -11,8 +11,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// 1e5 points out of focus by 2 px, 1e4 rays of each: the light of every ray is laid down, images stay on the card. One
-/// ray is one ray in one frame.
+/// Renders 1e5 points out of focus by 2 px with 1e4 rays each. The light of every ray is added to the images, which
+/// remain on the GPU. Rays are counted in each frame.
 void render_points_by_rays(benchmark::State& state, Setup setup) {
   Progress::enable(false);
   if (!cuda::device_state().usable) {
@@ -20,14 +20,15 @@ void render_points_by_rays(benchmark::State& state, Setup setup) {
     return;
   }
   setup.camera.columns = setup.camera.rows = 1024;
-  Scene scene = points_scene(setup, 90);
+  PlannedScene scene = points_scene(setup, 90);
   scene.dots.centre.resize(100000);
   auto const renderer = cuda::make_rays_renderer();
   std::vector<double> seconds;
-  renderer->render(scene, scene.dots, RenderImages::in_place, RenderTheory::no);
+  renderer->render(scene, scene.plan, scene.dots, RenderImages::in_place, RenderTheory::no);
   for (auto _ : state) {
     auto const start = std::chrono::steady_clock::now();
-    Rendering const rendering = renderer->render(scene, scene.dots, RenderImages::in_place, RenderTheory::no);
+    Rendering const rendering =
+        renderer->render(scene, scene.plan, scene.dots, RenderImages::in_place, RenderTheory::no);
     benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     state.SetIterationTime(seconds.back());

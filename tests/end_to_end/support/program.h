@@ -28,17 +28,17 @@ inline std::string content(std::filesystem::path const& path) {
 
 /// Outcome of a run of the program.
 struct Outcome {
-  int exit_code = -1;  ///< -1: it was killed
-  int signal = 0;      ///< signal that killed it
-  std::string out;     ///< stdout
-  std::string err;     ///< stderr
+  int exit_code = -1;  ///< exit code; -1: a signal killed the program
+  int signal = 0;      ///< signal that killed the program; 0: none
+  std::string out;     ///< text on stdout
+  std::string err;     ///< text on stderr
 };
 
 /// A run of the program, started as by a shell.
 class Program {
  public:
   /// @param folder  working directory
-  /// @param prepare run in the child before the program replaces it; false: give up with exit code 126
+  /// @param prepare  run in the child before the program replaces it; false: give up with exit code 126
   Program(std::vector<std::string> arguments, std::filesystem::path const& folder,
           std::function<bool()> const& prepare = {}) {
     char name[] = "/tmp/gladstone_streams_XXXXXX";
@@ -68,8 +68,8 @@ class Program {
 
   void send(int signal) const { ::kill(child_, signal); }
 
-  /// Waits until it has stopped itself at the point of stopping_at(), without a time limit.
-  /// @return false: it has ended without reaching the point
+  /// Waits, without a time limit, until the program has stopped itself at the point given to stopping_at().
+  /// @return false if the program has ended without reaching the point
   bool wait_until_stopped() {
     int status = 0;
     while (::waitpid(child_, &status, WUNTRACED) < 0 && errno == EINTR) {
@@ -79,7 +79,7 @@ class Program {
     return false;
   }
 
-  /// Returns true if it has ended.
+  /// Returns true if the program has ended.
   bool has_ended() {
     int status = 0;
     if (!ended_ && ::waitpid(child_, &status, WNOHANG) == child_) ended_ = status;
@@ -89,7 +89,7 @@ class Program {
   /// Returns the output on stderr so far.
   std::string err() const { return content(streams_ / "err"); }
 
-  /// Waits for the end; a program that exceeds the time limit is killed.
+  /// Waits until the program ends; kills it if it exceeds the time limit.
   Outcome finish(std::chrono::milliseconds limit) {
     auto const end = std::chrono::steady_clock::now() + limit;
     while (!has_ended()) {
@@ -111,16 +111,16 @@ class Program {
  private:
   std::filesystem::path streams_;
   pid_t child_ = 0;
-  std::optional<int> ended_;  ///< its status, after it has been waited for
+  std::optional<int> ended_;  ///< status of the process, once it has been waited for
 };
 
 /// Makes a Program stop itself when it reaches a point for the first time; "NAME:3": for the third time.
-/// @param more to prepare
+/// @param more  further preparation of the child process
 inline std::function<bool()> stopping_at(std::string const& point, std::function<bool()> const& more = {}) {
   return [=] { return ::setenv(stop_variable, point.c_str(), 1) == 0 && (!more || more()); };
 }
 
-/// Time after which a program counts as hanging. Only a safety net: no test depends on it.
+/// Time after which a program counts as hanging. No test depends on this time, which is only a safety net.
 inline constexpr std::chrono::seconds hang_limit{600};
 
 /// Runs the program until it ends.

@@ -15,7 +15,7 @@
 
 namespace gladstone::end_to_end {
 
-/// A small experiment that is rendered in a tenth of a second: 64 x 64 px with a uniform gradient, ray by ray.
+/// Setup of a small experiment that is rendered in a tenth of a second: 64 x 64 px with a uniform gradient, ray by ray.
 inline constexpr char const* small_setup = R"(schema = 1
 experiment = "bos"
 
@@ -54,11 +54,11 @@ inline std::string with(std::string text, std::string const& old, std::string co
   return at == std::string::npos ? text : text.replace(at, old.size(), replacement);
 }
 
-/// Returns the small experiment with the renderer of "auto", the fast one. It measures the error of its table with a
-/// million rays, which takes a second.
+/// Returns the setup of the small experiment with render.method = "auto", which selects the fast renderer. This
+/// renderer measures the error of its table with a million rays, which takes a second.
 inline std::string automatic_setup() { return with(small_setup, "method = \"rays\"\n", ""); }
 
-/// Returns "line:column" of a piece of text, counted like in the program.
+/// Returns the position "line:column" of a piece of text, counted as by the program.
 inline std::string place_of(std::string const& text, std::string const& piece) {
   auto const at = text.find(piece);
   EXPECT_NE(at, std::string::npos) << piece;
@@ -67,7 +67,7 @@ inline std::string place_of(std::string const& text, std::string const& piece) {
   return std::to_string(line) + ':' + std::to_string(start == std::string::npos ? at + 1 : at - start);
 }
 
-/// A new folder for each test, in which the program runs.
+/// Fixture that creates a new folder for each test, in which the program runs.
 class ProgramFixture : public FolderFixture {
  protected:
   void SetUp() override {
@@ -94,7 +94,7 @@ class ProgramFixture : public FolderFixture {
     EXPECT_TRUE(json.is_object()) << out;
     return json;
   }
-  /// Renders the setup into a case with more arguments.
+  /// Renders the setup into a case, with additional arguments.
   void render(std::string const& name, std::vector<std::string> const& more = {},
               std::string const& setup = "setup.toml") const {
     std::vector<std::string> arguments{"render", setup, "-o", name, "--quiet"};
@@ -102,7 +102,7 @@ class ProgramFixture : public FolderFixture {
     succeed(arguments);
   }
 
-  /// Contents of the folder: path to content; folders end in '/'.
+  /// Returns the contents of the folder as a map from path to file content; paths of folders end in '/'.
   std::map<std::string, std::string> everything() const {
     std::map<std::string, std::string> found;
     for (auto const& entry : std::filesystem::recursive_directory_iterator(folder_)) {
@@ -143,12 +143,19 @@ class ProgramFixture : public FolderFixture {
     auto const json = nlohmann::json::parse(output, nullptr, false);
     if (!json.is_object() || !json.contains("errors")) return found;
     for (nlohmann::json const& error : json["errors"]) {
-      std::string const place = error.value("file", error.value("key", ""));
+      std::string const place = error.value("place", "");
       found.push_back(error.value("code", "") + " at " + std::filesystem::path(place).filename().string());
-      for (char const* const part : {"line", "column"}) {
-        if (error.contains(part)) found.back() += ':' + std::to_string(error[part].get<int>());
-      }
     }
+    return found;
+  }
+  /// Returns the warnings of an object of --json or of a summary.json, each as "code at place", or "code" without one.
+  static std::vector<std::string> warnings_in(nlohmann::json const& json) {
+    std::vector<std::string> found;
+    for (nlohmann::json const& warning : json.at("warning_records")) {
+      std::string const place = std::filesystem::path(warning.at("place").get<std::string>()).filename().string();
+      found.push_back(warning.at("code").get<std::string>() + (place.empty() ? "" : " at " + place));
+    }
+    EXPECT_EQ(found.size(), json.at("warnings").size());
     return found;
   }
   /// Expects the rendering of this setup text to fail with an error of this code and place.

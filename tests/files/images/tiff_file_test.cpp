@@ -193,7 +193,7 @@ class TiffFile : public Output {
     EXPECT_EQ(header.sample_bytes, static_cast<std::uint64_t>(bytes_as_read(page.bits))) << page;
   }
 
-  /// As expect_read(), and expects the same samples and header from OpenImageIO. Its version 2.4 misreads separate
+  /// Like expect_read(), and expects the same samples and header from OpenImageIO. Its version 2.4 misreads separate
   /// planes of fewer bits than their type, and tiles of 64 bits.
   void expect_read_as_by_openimageio(PageLayout const& page) const {
     expect_read(page);
@@ -463,7 +463,7 @@ TEST_F(TiffFile, AnImageWithoutPixelsCannotBeEncoded) {
   EXPECT_THAT([] { encode_tiff("empty.tif", {}); }, ThrowsOutputError("empty.tif"));
 }
 
-// libtiff prints its errors and warnings unless it is told otherwise.
+// By default, libtiff prints its errors and warnings.
 TEST_F(TiffFile, DamagedFilesAreNamedAndNothingIsPrinted) {
   std::vector<std::uint16_t> values;
   std::vector<unsigned char> const bytes = encode_all_values({}, values);

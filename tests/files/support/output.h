@@ -38,7 +38,7 @@ class FileSizeLimit {
   rlimit before_{};
 };
 
-/// Fixture with a new folder for each test, and the names in it.
+/// Fixture that creates a new folder for each test, and lists the names in it.
 class Output : public FolderFixture {
  protected:
   std::vector<std::string> names(std::string const& folder = ".") const {

@@ -9,7 +9,7 @@
 
 namespace gladstone {
 
-/// Two results are equal to the last bit, NaN included, times excepted.
+/// Expects two results to be equal to the last bit, including NaN, except for the times.
 inline void expect_same(CaseResult const& one, CaseResult const& other) {
   EXPECT_EQ(one.status, other.status);
   EXPECT_EQ(one.error, other.error);

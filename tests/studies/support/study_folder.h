@@ -13,7 +13,7 @@
 
 namespace gladstone {
 
-/// A setup that renders in some milliseconds.
+/// Setup that is rendered in some milliseconds.
 inline constexpr char const* small_base = R"(schema = 1
 [camera]
 pixels = [64, 64]
@@ -37,7 +37,7 @@ inline std::vector<ManifestCase> all_cases(StudyPlan const& plan) {
   return cases;
 }
 
-/// A new folder for each test, with a base setup in it.
+/// Fixture that creates a new folder with a base setup for each test.
 class StudyFolder : public FolderFixture {
  protected:
   void SetUp() override {
@@ -52,7 +52,7 @@ class StudyFolder : public FolderFixture {
   }
   std::vector<ManifestCase> plan(std::string const& text) const { return all_cases(plan_study(study(text), "cpu")); }
 
-  /// Returns "CODE at PLACE" of each error of planning the study; empty if it is planned.
+  /// Returns "CODE at PLACE" of each error of planning the study; empty if planning succeeds.
   std::string complaint(std::string const& text) const {
     return error_of([&] { plan(text); });
   }

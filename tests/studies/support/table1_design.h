@@ -14,7 +14,7 @@ inline FixedDesignParameters table1_given() {
   return given;
 }
 
-/// Its set-up: f = 105 mm, f/11, Z_A = 750 mm, Z_D = 250 mm, dots of 3 px.
+/// Set-up of Table 1: f = 105 mm, f/11, Z_A = 750 mm, Z_D = 250 mm, dots of 3 px.
 inline DesignPoint<double> table1_design(FixedDesignParameters const& given) {
   DesignPoint<double> bench{&given, 0.105, 11, 0.75, 0.25, 0};
   bench.dot_diameter = 3 * bench.pixel_at_dots();

@@ -62,7 +62,8 @@ std::optional<ArrayCoordinates> CoordinateReader::read(std::string const& datase
 }
 
 bool CoordinateReader::is_mesh(ArrayShape shape) const {
-  if (coordinate_name(name_)) return false;  // the datasets x, y and z are then fields themselves
+  // the array is one of the datasets x, y and z, so that these are fields and not coordinates
+  if (coordinate_name(name_)) return false;
   ArrayShape field;
   for (std::size_t i = axes_.rank(); i-- > 0;) field.push_back(axes_.length(i));
   std::erase(field, 1u);

@@ -17,7 +17,7 @@ std::string last_step(std::string const& path);
 /// World axis and unit of an array of coordinates, as its name states them: "x_mm".
 struct NamedCoordinate {
   char axis = 'x';
-  std::string unit;  ///< empty: not stated by the name
+  std::string unit;  ///< unit; empty: not stated by the name
 };
 /// Returns the axis and unit of an array of coordinates (x, xcoor, x_coor, x_mm, x_m, x_um, x_cm, with any of x, y and
 /// z in upper or lower case); nullopt for other names.
@@ -41,7 +41,7 @@ class CoordinateReader {
       : file_(file), path_(std::move(path)), name_(std::move(name)), axes_(std::move(axes)) {}
 
   /// Reads a dataset of coordinates; nullopt if it has no numbers, or a shape that is neither one axis nor the field's.
-  /// @param unit  unit that its name states; empty: that of its attribute "units"
+  /// @param unit  unit stated in the name of the dataset; empty: the unit is that of its attribute "units"
   /// @throws DataError if coordinates of all nodes vary along several axes
   std::optional<ArrayCoordinates> read(std::string const& dataset, std::string const& unit) const;
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/readers/checked_source.h"
 
 namespace gladstone {
@@ -36,12 +37,12 @@ class ArrayFile {
   virtual std::vector<std::string> dimension_scales(std::string const& array) const = 0;
   virtual std::vector<std::string> dimension_labels(std::string const& array) const = 0;
   /// Returns warnings about parts of the file that are ignored.
-  virtual std::vector<std::string> notes() const { return {}; }
+  virtual Warnings notes() const { return {}; }
 };
 
 /// Opens an array of a file as a field.
 ///
-/// - Shapes: [nz, ny, nx] or [ny, nx], with additional axes of length one at any place; the components of a velocity
+/// - Shapes: [nz, ny, nx] or [ny, nx], with additional axes of length one at any position; the components of a velocity
 ///   are the last or the first axis, or separate arrays (join_velocities()).
 /// - Coordinates: the dimension scales of netCDF-4, else arrays xcoor, x, X, x_mm, x_m, x_um ... in the group of the
 ///   array or above it, in the unit of their name or of their attribute "units". They have one axis, or the shape of

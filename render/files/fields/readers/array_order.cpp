@@ -10,8 +10,8 @@
 namespace gladstone {
 namespace {
 
-/// Returns the orders of some axes in which each coordinate dataset has as many places as its axis has nodes, or
-/// `more` than that.
+/// Returns the orders of some axes in which each coordinate dataset has the length of its axis plus `more`.
+/// @param more  0: coordinates of nodes; 1: coordinates of the edges of cells
 std::vector<std::string> fitting_orders(std::string letters,
                                         std::array<std::optional<ArrayCoordinates>, 3> const& of_letter,
                                         ArrayAxes const& axes, std::size_t more) {

@@ -16,7 +16,7 @@ struct ArrayOrder {
 };
 
 /// Determines the order of the axes by the lengths of the coordinates: z, y, x if they allow it, else the only order
-/// that they allow. A plane is across x and y unless one of them has no coordinates and z has.
+/// that they allow. A two-dimensional array spans x and y unless one of these has no coordinates while z has.
 /// @param of_letter  coordinates along x, y and z, as far as there are any
 /// @param path,name  file and array, for errors
 /// @throws DataError if several orders other than z, y, x are possible

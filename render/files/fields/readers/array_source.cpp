@@ -44,10 +44,10 @@ class ArraySource final : public CheckedSource {
     if (!states_unit(units_.values) && !suffix.empty()) units_.values = suffix;
     packing_ = read_packing(*file_, name_);
     if (values_ == 1 && rank() == 3 && may_be_components(length(0)) && length(1) > 3 && length(2) > 3) {
-      notes_.push_back(
-          fmt::format("the last axis of \"{}\" of shape {} is read as the axis x; if it contains the components of a "
-                      "vector, write each component as a separate array",
-                      name_, shape_text(shape_)));
+      notes_.push_back({WarningCode::assumed, "",
+                        fmt::format("the last axis of \"{}\" of shape {} is read as the axis x; if it contains the "
+                                    "components of a vector, write each component as a separate array",
+                                    name_, shape_text(shape_))});
     }
     std::string const by = place_axes(selection.axes);
     describe(nodes, rank(), by);
@@ -144,10 +144,11 @@ class ArraySource final : public CheckedSource {
   void place(std::size_t i, ArrayCoordinates const& own) {
     std::string const what = "dataset \"" + own.dataset + '"';
     if (own.axis && *own.axis != i) {
-      throw DataError(ErrorCode::inconsistent, path_,
-                      fmt::format("{} varies along axis {} of \"{}\" (from the slowest), where {} is axis {}; name "
-                                  "the axes in the order of the file: axes = \"zxy\"",
-                                  what, rank() - *own.axis, name_, axes_[i].world, rank() - i));
+      throw DataError(
+          ErrorCode::inconsistent, path_,
+          fmt::format("{} varies along axis {} of \"{}\" (counted from the slowest), but {} is read as axis {}; name "
+                      "the axes in the order of the file: axes = \"zxy\"",
+                      what, rank() - *own.axis, name_, axes_[i].world, rank() - i));
     }
     if (own.places.size() != length(i)) {
       throw DataError(ErrorCode::wrong_shape, path_,
@@ -160,7 +161,7 @@ class ArraySource final : public CheckedSource {
     axes_[i].world = world;
   }
 
-  /// Reports axes without coordinates, and the datasets that may be theirs but are not used.
+  /// Reports axes without coordinates, and unused datasets that may contain the missing coordinates.
   void report_missing(std::array<std::optional<ArrayCoordinates>, 3> const& own) {
     std::string missing;
     for (std::size_t i = rank(); i-- > 0;) {
@@ -190,10 +191,12 @@ class ArraySource final : public CheckedSource {
                              fmt::join(unused, ", "), unused.size() == 1 ? "it is" : "they are");
     bool const some = units_.spaced;
     if (!some && unused.empty()) return;  // FieldUnits::assumed() reports this
-    notes_.push_back(fmt::format(
-        "no coordinates along {} are found{}{}", missing,
-        some ? fmt::format(", and nodes there are taken 1 {} apart", units_.length.empty() ? "mm" : units_.length) : "",
-        ignored));
+    notes_.push_back({WarningCode::assumed, "",
+                      fmt::format("no coordinates along {} are found{}{}", missing,
+                                  some ? fmt::format(", and nodes there are taken 1 {} apart",
+                                                     units_.length.empty() ? "mm" : units_.length)
+                                       : "",
+                                  ignored)});
   }
 
   /// Returns the order of the axes, slowest first, by their labels x, y and z; empty if not all axes have one.
@@ -210,10 +213,10 @@ class ArraySource final : public CheckedSource {
   void note_matlab() {
     bool const matlab = !file_->attribute(name_, "MATLAB_class").empty();
     if (!matlab || rank() != 3) return;
-    notes_.push_back(
-        fmt::format("\"{}\" is an array of MATLAB of shape {}, taken as z, y, x (as ndgrid makes it); "
-                    "if meshgrid made it, set axes = \"zxy\"",
-                    name_, shape_text(shape_)));
+    notes_.push_back({WarningCode::assumed, "",
+                      fmt::format("\"{}\" is an array of MATLAB of shape {}, taken as z, y, x (as ndgrid makes it); if "
+                                  "meshgrid made it, set axes = \"zxy\"",
+                                  name_, shape_text(shape_))});
   }
 
   int significant_bits() const override {

@@ -14,8 +14,8 @@ struct ByteRange {
   enum class Coding { stored, deflate, zlib };
 
   std::shared_ptr<InputFile const> file;
-  std::string name;          ///< of the array, for messages
-  std::uint64_t offset = 0;  ///< of the first stored byte in the file
+  std::string name;          ///< name of the array, for messages
+  std::uint64_t offset = 0;  ///< offset of the first stored byte in the file
   std::uint64_t size = 0;    ///< number of stored bytes
   Coding coding = Coding::stored;
 };

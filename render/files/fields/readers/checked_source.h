@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/field_axes.h"
 #include "render/files/fields/field_units.h"
 
@@ -33,7 +34,7 @@ class CheckedSource {
   StoredAxes const& axes() const { return axes_; }
   FieldUnits const& units() const { return units_; }
   AxisAssignment const& reading() const { return reading_; }
-  std::vector<std::string> const& notes() const { return notes_; }
+  Warnings const& notes() const { return notes_; }
   virtual int significant_bits() const = 0;
 
   /// Reads rows [first_row, first_row + count) of a plane of the slowest axis.
@@ -56,7 +57,7 @@ class CheckedSource {
   StoredAxes axes_ = default_axes();
   FieldUnits units_;
   AxisAssignment reading_;
-  std::vector<std::string> notes_;
+  Warnings notes_;
 
  private:
   /// Throws DataError if one of the values is bad, after counting the bad values of the whole field.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/readers/array_file.h"
 #include "render/files/fields/value_store.h"
 
@@ -32,7 +33,7 @@ struct OtherEntry {
 class ListedArrays final : public ArrayFile {
  public:
   ListedArrays(std::string path, std::vector<ListedArray> arrays, std::vector<OtherEntry> others = {},
-               std::vector<std::string> notes = {})
+               Warnings notes = {})
       : path_(std::move(path)), arrays_(std::move(arrays)), others_(std::move(others)), notes_(std::move(notes)) {}
 
  private:
@@ -50,14 +51,14 @@ class ListedArrays final : public ArrayFile {
     return std::vector<std::string>(find(array).shape.size());
   }
   std::vector<std::string> dimension_labels(std::string const& array) const override { return dimension_scales(array); }
-  std::vector<std::string> notes() const override { return notes_; }
+  Warnings notes() const override { return notes_; }
 
   ListedArray const& find(std::string const& array) const;
 
   std::string path_;
   std::vector<ListedArray> arrays_;
   std::vector<OtherEntry> others_;
-  std::vector<std::string> notes_;
+  Warnings notes_;
 };
 
 /// Returns a function that loads all values at its first call, and keeps them.

@@ -56,7 +56,7 @@ std::string describe_class(std::uint32_t array_class, bool complex) {
   }
 }
 
-/// Element of a file: type, number of bytes and the place of the data.
+/// Element of a file: type, number of bytes and position of the data.
 struct MatlabTag {
   std::uint32_t type = 0;
   std::uint64_t size = 0, data = 0, next = 0;
@@ -67,8 +67,8 @@ class MatrixHead {
  public:
   MatrixHead(ByteRange const& range, bool swap) : range_(range), swap_(swap), bytes_(read_up_to(range, 4096)) {}
 
-  /// Reads the tag at a place. Up to four bytes of data may be stored in the tag itself, with their number in its upper
-  /// half.
+  /// Reads the tag at a position. Up to four bytes of data may be stored in the tag itself, with their number in its
+  /// upper half.
   MatlabTag tag(std::uint64_t at) const {
     std::uint32_t const first = word(at);
     if ((first >> 16) != 0) return {first & 0xFFFFu, first >> 16, at + 4, at + 8};
@@ -104,7 +104,7 @@ struct MatlabArray {
   bool swap = false;
 };
 
-/// Converts values and passes them on with their numbers.
+/// Converts values and calls set(index, value) for each.
 template <class Set>
 void convert_values(MatlabArray const& array, char const* bytes, std::size_t count, Set const& set) {
   for (std::size_t i = 0; i < count; ++i) set(i, array.number.read(bytes + i * array.number.bytes, array.swap));
@@ -166,7 +166,7 @@ class MatlabFile {
     if (matrix.size == 0) return;  // an empty matrix has no header
     MatlabTag const flags = head.tag(8), sizes = head.tag(flags.next), name = head.tag(sizes.next);
     range.name = head.text(name);
-    if (range.name.empty()) return;  // data of MATLAB's own
+    if (range.name.empty()) return;  // arrays without a name hold internal data of MATLAB
     std::uint32_t const word = head.word(flags.data);
     constexpr std::uint32_t complex_bit = 0x0800;
     std::string const other = describe_class(word & 0xFFu, (word & complex_bit) != 0);

@@ -134,9 +134,10 @@ class NrrdAxes {
       }
     }
     if (assumed_cells) {
-      header_.notes.emplace_back(
-          "\"axis mins\" and \"axis maxs\" without \"centers\" are taken as the outer faces of cells, as teem does; "
-          "if they are the first and last node, write \"centers: node node node\"");
+      header_.notes.push_back(
+          {WarningCode::assumed, "",
+           "\"axis mins\" and \"axis maxs\" without \"centers\" are taken as the outer faces of cells, as teem does; "
+           "if they are the first and last node, write \"centers: node node node\""});
     }
   }
 

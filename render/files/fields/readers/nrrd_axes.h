@@ -5,7 +5,7 @@
 
 namespace gladstone {
 
-/// Returns the header with what its fields say of axes: dimension, sizes, axes, units, notes, directed and labelled.
+/// Returns the header with the properties of its axes: dimension, sizes, axes, units, notes, directed and labelled.
 /// Axes of components and superfluous axes of one node are dropped; the others are placed by "space directions", or
 /// else by "spacings" or "axis mins" and "axis maxs".
 /// @param values  number of values per node

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/field_axes.h"
 #include "render/files/fields/field_units.h"
 
@@ -26,12 +27,12 @@ struct NrrdHeader {
   bool directed = false;  ///< the header assigns world axes by "space directions"
   bool labelled = false;  ///< the header assigns world axes by "labels"
   FieldUnits units;
-  std::vector<std::string> notes;  ///< assumptions made, for warnings
-  std::string content;             ///< name of the field (entry "content"); may be empty
-  std::string data_path;           ///< file of the data; the header's file if they are attached
-  std::size_t data_offset = 0;     ///< offset of the data section in data_path [bytes]
-  long line_skip = 0;              ///< lines to skip before the data, before decompression
-  long long byte_skip = 0;         ///< bytes to skip before the data, after decompression; -1: the data end the file
+  Warnings notes;               ///< assumptions made, for warnings
+  std::string content;          ///< name of the field (entry "content"); may be empty
+  std::string data_path;        ///< file of the data; the header's file if they are attached
+  std::size_t data_offset = 0;  ///< offset of the data section in data_path [bytes]
+  long line_skip = 0;           ///< lines to skip before the data, before decompression
+  long long byte_skip = 0;      ///< bytes to skip before the data, after decompression; -1: the data end the file
 
   std::size_t value_bytes() const;
   int significant_bits() const;  ///< significant bits of a value: 24 for float, 53 for double, the width of an integer

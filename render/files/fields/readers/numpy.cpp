@@ -63,11 +63,11 @@ std::string describe_dtype(std::string const& dtype) {
 
 /// Header of an array.
 struct NpyHeader {
-  std::string dtype;  ///< "<f4"; records: "[..."
+  std::string dtype;  ///< NumPy type of an element, "<f4"; that of a record begins with "["
   bool fortran = false;
   std::vector<std::size_t> shape;
   std::uint64_t data = 0;           ///< offset of the first value
-  std::optional<NumpyType> type{};  ///< nullopt: no real numbers
+  std::optional<NumpyType> type{};  ///< numeric type; nullopt: the array holds no real numbers
   bool swap = false;
 };
 
@@ -97,7 +97,7 @@ class NpyDictionary {
     if (!value.starts_with('(') || end == std::string_view::npos) refuse();
     value = value.substr(1, end - 1);
     std::vector<std::size_t> sizes;
-    constexpr std::size_t most_axes = 64;  // NumPy 2
+    constexpr std::size_t most_axes = 64;  // maximum of NumPy 2
     while ((value = value.substr(std::min(value.find_first_not_of(" ,L"), value.size()))), !value.empty()) {
       std::size_t size = 0;
       auto const [rest, error] = std::from_chars(value.data(), value.data() + value.size(), size);
@@ -189,7 +189,7 @@ void read_stored(ByteRange const& range, NpyHeader const& header, std::size_t fi
   }
 }
 
-/// Returns the place in C order of each value of an array in Fortran order, one after the other.
+/// Iterates over an array in Fortran order, and returns the index in C order of each value.
 class FortranOrder {
  public:
   explicit FortranOrder(std::vector<std::size_t> const& shape)

@@ -15,8 +15,8 @@ namespace {
 
 constexpr char const* own_density = "density_kg_m3";
 
-/// Returns true if one of two or three entries along a spatial axis of an array is a component, by its dimension scale:
-/// the scale is no coordinate, while another axis has one.
+/// Returns true if an axis of an array counts vector components according to its dimension scales: the scale of an axis
+/// with two or three elements is not a coordinate, but that of another axis is.
 bool has_components(ArrayFile const& file, std::string const& name, ArrayAxes const& axes) {
   auto const scales = file.dimension_scales(name);
   bool components = false, coordinates = false;
@@ -45,7 +45,7 @@ std::string only_field(ArrayFile const& file, std::string const& path, int value
   }
   auto const& fields = volumes.empty() ? planes : volumes;
   if (fields.size() == 1) return fields.front();
-  // a density of gladstone, with its uncertainty and truth
+  // several fields: prefer the density of gladstone's files, which also contain its uncertainty and truth
   if (std::find(fields.begin(), fields.end(), own_density) != fields.end()) return own_density;
   if (fields.empty()) {
     for (auto const& other : file.describe_others()) others += (others.empty() ? "" : ", ") + other;

@@ -106,16 +106,18 @@ std::vector<std::size_t> rows_of_nodes(PointTable const& table, std::vector<Poin
                       fmt::format("the point {} is also in line {}; keep one of them", node_text(axes, places[i].first),
                                   table.line[places[i - 1].second]));
     }
-    throw DataError(ErrorCode::missing_content, path,
-                    fmt::format("lacks the point {}: {} points do not fill the grid of {:.0f}; add it, or resample "
-                                "the points to a regular grid",
-                                node_text(axes, i), places.size(), nodes));
+    throw DataError(
+        ErrorCode::missing_content, path,
+        fmt::format("lacks the point {}: {} points do not fill the grid of {:.0f} nodes; add it, or resample "
+                    "the points to a regular grid",
+                    node_text(axes, i), places.size(), nodes));
   }
   if (static_cast<double>(places.size()) < nodes) {
-    throw DataError(ErrorCode::missing_content, path,
-                    fmt::format("lacks the point {}: {} points do not fill the grid of {:.0f}; add it, or resample "
-                                "the points to a regular grid",
-                                node_text(axes, places.size()), places.size(), nodes));
+    throw DataError(
+        ErrorCode::missing_content, path,
+        fmt::format("lacks the point {}: {} points do not fill the grid of {:.0f} nodes; add it, or resample "
+                    "the points to a regular grid",
+                    node_text(axes, places.size()), places.size(), nodes));
   }
   return rows;
 }

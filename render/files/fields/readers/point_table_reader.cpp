@@ -134,7 +134,8 @@ class PointTableReader {
     }
     if (text.front() == '#' || text.front() == '%') return true;
     if (lower_case(text.substr(0, 4)) == "zone") {
-      table_.notes.push_back(file_.place() + ": another zone begins here; only the first one is read");
+      table_.notes.push_back(
+          {WarningCode::ignored, file_.place(), "another zone begins here; only the first one is read"});
       return false;
     }
     if (table_.columns.empty()) read_header();
@@ -190,7 +191,7 @@ class PointTableReader {
   LineReader file_;
   std::vector<std::string> header_;
   TecplotZone zone_;
-  BlockValues block_;  ///< empty without BLOCK packing
+  BlockValues block_;  ///< values of a zone in BLOCK packing; empty for other packings
   PointTable table_;
 };
 

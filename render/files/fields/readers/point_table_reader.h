@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
+
 namespace gladstone {
 
 /// Column of a table: its name and unit, and its values.
@@ -16,7 +18,7 @@ struct PointColumn {
 struct PointTable {
   std::vector<PointColumn> columns;
   std::vector<std::size_t> line;  ///< line of each point, from 1
-  std::vector<std::string> notes;
+  Warnings notes;
 };
 
 /// Reads a table of points: text with a header line that names the columns, or the first zone of a Tecplot file.

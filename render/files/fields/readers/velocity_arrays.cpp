@@ -27,7 +27,7 @@ constexpr std::array velocity_names{ComponentNames{"u", "v", "w"}, ComponentName
 /// Arrays of the components of a velocity, and the name of the array of vectors.
 struct Velocity {
   std::string name;
-  std::array<std::string, 3> components;  ///< the third one may be empty
+  std::array<std::string, 3> components;  ///< names of the arrays of the components; the third one may be empty
 };
 
 /// Returns the name of an array in lower case without its group and unit: "vx" of "flow/Vx_m_s".
@@ -49,7 +49,7 @@ class VelocityArrays final : public ArrayFile {
   }
 
  private:
-  /// Adds the velocity whose first component is an array, if there is a second one.
+  /// Adds a velocity with the array `first` as its first component, if the file contains the second component.
   void join(std::vector<std::string> const& given, std::string const& first, ComponentNames const& wanted) {
     std::string const group = first.substr(0, first.size() - last_step(first).size());
     ArrayShape shape = file_->shape(first);
@@ -99,7 +99,7 @@ class VelocityArrays final : public ArrayFile {
 
   std::vector<double> read(std::string const& array) const override { return file_->read(array); }
 
-  /// The last axis of a velocity is that of its components, whose packing may differ.
+  /// Reads each component from its own array, since their packings may differ; the last axis counts the components.
   void read_box(std::string const& array, std::vector<std::size_t> const& start, std::vector<std::size_t> const& size,
                 std::span<double> out) const override {
     Velocity const* const velocity = find_velocity(array);
@@ -159,14 +159,14 @@ class VelocityArrays final : public ArrayFile {
     return labels;
   }
 
-  std::vector<std::string> notes() const override {
-    std::vector<std::string> notes = file_->notes();
+  Warnings notes() const override {
+    Warnings notes = file_->notes();
     for (Velocity const& velocity : velocities_) {
       if (!velocity.components[2].empty()) continue;
-      notes.push_back(
-          fmt::format("\"{}\" and \"{}\" are read as a velocity whose third component is 0, since the file "
-                      "has none of their shape",
-                      velocity.components[0], velocity.components[1]));
+      notes.push_back({WarningCode::assumed, "",
+                       fmt::format("\"{}\" and \"{}\" are read as a velocity whose third component is 0, since the "
+                                   "file has none of their shape",
+                                   velocity.components[0], velocity.components[1])});
     }
     return notes;
   }

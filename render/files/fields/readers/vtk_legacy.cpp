@@ -67,7 +67,8 @@ class LegacyReader {
     VtkLegacyArray const& chosen = fitting.front();
     VtkField field{chosen.name, chosen.place, chosen.number.significant_bits, grid_, {}, {}};
     if (fitting.size() > 1)
-      field.notes.push_back(fmt::format("\"{}\" occurs twice; the first one is used", chosen.name));
+      field.notes.push_back(
+          {WarningCode::ignored, "", fmt::format("\"{}\" occurs twice; the first one is used", chosen.name)});
     field.load = [file = file_, chosen, text = text_] { return load_legacy_array(*file, chosen, text); };
     return field;
   }

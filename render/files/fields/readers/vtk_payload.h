@@ -21,7 +21,7 @@ struct VtkEncoding {
 struct VtkPayload {
   enum class Format { ascii, base64, raw };
   Format format = Format::ascii;
-  bool appended = false;     ///< in the section <AppendedData>, not inline
+  bool appended = false;     ///< the array is in the section <AppendedData>, not inline
   std::uint64_t offset = 0;  ///< offset of appended data in the file [bytes]
   std::string text;          ///< text of inline data
 };

@@ -15,7 +15,7 @@ namespace gladstone {
 
 /// One <Piece> of a grid, with the selected array.
 struct VtkPiece {
-  std::array<int, 6> extent{};  ///< index of its first and last point along i, j and k
+  std::array<int, 6> extent{};  ///< index of the piece's first and last point along i, j and k
   VtkPayload payload;
   VtkNumber number{};
 };
@@ -31,7 +31,7 @@ struct VtkArrays {
   std::vector<VtkPiece> pieces;
 };
 
-/// Returns the number of points between the begin of a grid and that of a part of it, along an axis.
+/// Returns the number of points along an axis between the first point of a grid and that of a part of the grid.
 std::size_t offset_in(std::array<int, 6> const& part, std::array<int, 6> const& whole, std::size_t axis);
 
 /// The numbers of a piece, in the order of the file.

@@ -10,7 +10,7 @@ namespace gladstone {
 struct VtkPointArray {
   std::string name;
   std::size_t components = 1;
-  std::vector<double> values;  ///< those of the first point first
+  std::vector<double> values;  ///< values at the points, in the order of the points
 };
 
 /// Points of a VTK file and the numbers at them.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/readers/checked_source.h"
 #include "render/files/fields/value_store.h"
 
@@ -31,7 +32,7 @@ struct VtkField {
   VtkPlace place = VtkPlace::points;
   int significant_bits = 24;
   VtkGrid grid;
-  std::vector<std::string> notes;
+  Warnings notes;
   std::function<ValueStore()> load;  ///< reads all values in the order [k][j][i][component]
 };
 

@@ -99,8 +99,9 @@ class VtkXmlReader {
       refuse(ErrorCode::undetermined, "has several such fields; select one with dataset = " + quoted_list(names));
     }
     if (fitting.size() > 1) {
-      notes_.push_back(fmt::format("\"{}\" exists for points and for cells; that of {} is used", fitting.front(),
-                                   places.front() == VtkPlace::points ? "points" : "cells"));
+      notes_.push_back({WarningCode::assumed, "",
+                        fmt::format("\"{}\" exists for points and for cells; that of {} is used", fitting.front(),
+                                    places.front() == VtkPlace::points ? "points" : "cells")});
     }
     arrays_->name = fitting.front();
     arrays_->place = places.front();
@@ -144,7 +145,8 @@ class VtkXmlReader {
       return piece.payload.format == VtkPayload::Format::ascii;
     });
     if (!ascii && !document_.states_byte_order()) {
-      notes_.emplace_back("the file names no byte_order; its numbers are taken as little endian");
+      notes_.push_back(
+          {WarningCode::assumed, "", "the file names no byte_order; its numbers are taken as little endian"});
     }
   }
 
@@ -171,7 +173,7 @@ class VtkXmlReader {
   FieldSelection const& selection_;
   VtkDocument document_;
   VtkGrid grid_;
-  std::vector<std::string> notes_;
+  Warnings notes_;
 };
 
 }  // namespace

@@ -52,7 +52,7 @@ struct ZipDirectory {
   std::uint64_t entries = 0, size = 0, offset = 0;
 };
 
-/// Finds the directory by the record at the end of the archive, and that of ZIP64 before it.
+/// Finds the directory by the records at the end of the archive: the usual one, and that of ZIP64 before it.
 ZipDirectory find_directory(InputFile const& file) {
   constexpr std::uint64_t record = 22, longest_comment = 65535, locator = 20;
   std::uint64_t const size = std::min(file.size(), record + longest_comment + locator);

@@ -12,7 +12,7 @@ namespace gladstone {
 struct ZipEntry {
   ByteRange range;
   std::uint64_t size = 0;   ///< number of decompressed bytes
-  std::uint32_t crc32 = 0;  ///< of the decompressed bytes
+  std::uint32_t crc32 = 0;  ///< CRC-32 of the decompressed bytes
 };
 
 /// Lists the entries of a zip archive, also one of more than 4 GiB (ZIP64); PKWARE, "APPNOTE.TXT", version 6.3.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/compare/compare.h"
+#include "studies/drawing/figure.h"
+
+namespace gladstone {
+
+/// Figures of a comparison by their file names: displacement_maps and error_against_gradient, for vectors on a grid,
+/// error_histograms and error_budget.
+std::vector<NamedFigure> make_comparison_figures(Comparison const& comparison);
+
+/// Draws the figures of a comparison into a folder.
+/// @param format  "png", "svg" or "pdf"
+/// @return paths of the figures
+/// @throws GnuplotMissing, OutputError
+std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
+                                         std::string const& format = "png");
+
+}  // namespace gladstone
