@@ -28,7 +28,7 @@ class Correlator {
   virtual DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const = 0;
   /// Measures the displacement like correlate(), for frames in host or device memory. Frames on the correlator's own
   /// device are not copied to the host.
-  virtual DisplacementField correlate_pair(FramePair const& frames) const {
+  virtual DisplacementField correlate_pair(StoredFrames const& frames) const {
     return correlate(frames.reference(), frames.flow());
   }
 };

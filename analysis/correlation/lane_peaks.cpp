@@ -1,9 +1,7 @@
 #include "analysis/correlation/lane_peaks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <utility>
 
 #include "analysis/correlation/window_peak.h"
 

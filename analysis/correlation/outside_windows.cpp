@@ -37,7 +37,7 @@ bool is_outside(Image<double> const& reference, Image<double> const& flow, Vec2d
 
 }  // namespace
 
-void mark_windows_outside(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
+void mark_windows_outside(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings) {
   if (std::find(field.reason.begin(), field.reason.end(), VectorReason::masked) == field.reason.end()) return;
   Image<double> const &reference = frames.reference(), &flow = frames.flow();
   auto const is_gap = [](double level) { return !std::isfinite(level); };

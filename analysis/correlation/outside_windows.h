@@ -12,6 +12,6 @@ namespace gladstone {
 /// displacement in each frame, more of its pixels are outside the frames than are non-finite. If all pixels of the
 /// frames are finite, all masked vectors are changed.
 /// @param field  result of a correlator for these frames and settings
-void mark_windows_outside(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
+void mark_windows_outside(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -298,7 +298,7 @@ bool are_identical_frames(Image<double> const& a, Image<double> const& b) {
   });
 }
 
-void assess_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
+void assess_pair(DisplacementField& field, StoredFrames const& frames, Correlator const& correlator,
                  CorrelationSettings const& settings) {
   if (!field.verdict.empty()) return;
   mark_windows_outside(field, frames, settings);

@@ -35,7 +35,7 @@ void reject_uncorrelated_vectors(DisplacementField& field, DisplacementField con
 /// - Does nothing if the correlator has set a verdict itself.
 /// @param field  result of the correlator for these frames
 /// @throws the exceptions of Correlator::correlate()
-void assess_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
+void assess_pair(DisplacementField& field, StoredFrames const& frames, Correlator const& correlator,
                  CorrelationSettings const& settings);
 
 /// Returns false if assess_pair() found that the frames do not correlate.

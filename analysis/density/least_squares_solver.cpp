@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "render/base/error.h"
 
 namespace gladstone::density {

@@ -1,6 +1,5 @@
 #include "analysis/errors/deformed_window_truth.h"
 
-#include <cmath>
 #include <optional>
 
 #include "analysis/correlation/standard_correlator.h"

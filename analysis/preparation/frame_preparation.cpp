@@ -26,10 +26,10 @@ void fill_unknown(PreparedFrames& frames) {
 
 }  // namespace
 
-HostFrames prepare_frames(FramePair const& frames, FramePreparation const& preparation) {
+HostFrames prepare_frames(StoredFrames const& frames, FramePreparation const& preparation) {
   Image<double> const &reference = frames.reference(), &flow = frames.flow();
   GLADSTONE_EXPECTS(reference.columns() == flow.columns() && reference.rows() == flow.rows());
-  PreparedFrames prepared{reference, flow, Image<double>(reference.columns(), reference.rows(), 1.0)};
+  PreparedFrames prepared{{reference, flow}, Image<double>(reference.columns(), reference.rows(), 1.0)};
   for (std::size_t i = 0; i < reference.size(); ++i)
     if (!std::isfinite(reference.data()[i]) || !std::isfinite(flow.data()[i])) prepared.known.data()[i] = 0.0;
   fill_unknown(prepared);
@@ -42,7 +42,7 @@ HostFrames prepare_frames(FramePair const& frames, FramePreparation const& prepa
   return {std::move(prepared.reference), std::move(prepared.flow)};
 }
 
-double valid_pixel_fraction(FramePair const& frames) {
+double valid_pixel_fraction(StoredFrames const& frames) {
   Image<double> const& reference = frames.reference();
   auto const known = std::count_if(reference.begin(), reference.end(), [](double level) { return level == level; });
   return reference.empty() ? 0.0 : static_cast<double>(known) / static_cast<double>(reference.size());

@@ -12,9 +12,7 @@
 namespace gladstone {
 
 /// Pair of frames during the preparation.
-struct PreparedFrames {
-  Image<double> reference;
-  Image<double> flow;
+struct PreparedFrames : FramePair<double> {
   /// 1 at pixels that are valid in both frames, else 0; the grey levels of invalid pixels are meaningless.
   Image<double> known;
 };
@@ -37,9 +35,9 @@ struct FramePreparation {
 /// correlators ignore them. Masks are evaluated on the original frames and applied after the steps. During the steps,
 /// invalid pixels have the mean grey level of the valid ones, so that their light does not affect their surroundings.
 /// @throws DataError if a file of a mask or step does not match the frames
-HostFrames prepare_frames(FramePair const& frames, FramePreparation const& preparation);
+HostFrames prepare_frames(StoredFrames const& frames, FramePreparation const& preparation);
 
 /// Returns the fraction of pixels of the first frame (`reference`) that are not NaN [1].
-double valid_pixel_fraction(FramePair const& frames);
+double valid_pixel_fraction(StoredFrames const& frames);
 
 }  // namespace gladstone

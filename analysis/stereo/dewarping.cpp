@@ -1,7 +1,6 @@
 #include "analysis/stereo/dewarping.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "analysis/stereo/cubic_convolution.h"

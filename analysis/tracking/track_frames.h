@@ -10,7 +10,7 @@ namespace gladstone::tracking {
 
 /// Pair of frames of a sequence with equal intervals of time, with the frames before and after it, for particle tracks
 /// over up to four frames.
-class TrackFrames final : public FramePair {
+class TrackFrames final : public StoredFrames {
  public:
   /// @param before,  after frames before and after the pair, of the same size as the pair; nullopt: missing
   /// @param dots           receives the scattered vectors of a tracking correlator; null: not requested

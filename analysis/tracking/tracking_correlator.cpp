@@ -79,7 +79,7 @@ class TrackingCorrelator final : public Correlator {
     return correlate_pair(HostFrames(reference, flow));
   }
 
-  DisplacementField correlate_pair(FramePair const& frames) const override {
+  DisplacementField correlate_pair(StoredFrames const& frames) const override {
     DisplacementField predictor = predictor_->correlate_pair(frames);
     assess_pair(predictor, frames, *predictor_, predictor_settings_);
     DisplacementField dots = track(frames, certain_vectors(predictor));
@@ -99,7 +99,7 @@ class TrackingCorrelator final : public Correlator {
   }
 
  private:
-  DisplacementField track(FramePair const& frames, DisplacementField const& predictor) const {
+  DisplacementField track(StoredFrames const& frames, DisplacementField const& predictor) const {
     auto const* const of_sequence = dynamic_cast<TrackFrames const*>(&frames);
     return of_sequence ? track_dots(*of_sequence, predictor, tracking_, located_)
                        : track_dots(frames.reference(), frames.flow(), predictor, tracking_);

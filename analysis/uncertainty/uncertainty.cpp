@@ -33,7 +33,7 @@ constexpr std::array uncertainties{
 };
 
 /// Deforms both frames by the measured displacement field, whose gaps are filled first.
-ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const& grid, FramePair const& frames,
+ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const& grid, StoredFrames const& frames,
                          CorrelationSchedule const& schedule) {
   std::vector<GridVector> vectors(field.size());
   for (std::size_t i = 0; i < vectors.size(); ++i) {
@@ -137,7 +137,7 @@ void record_uncertainty(DisplacementField& field, CorrelationSettings const& giv
     field.uncertainty_key += fmt::format(" ({})", explain_no_uncertainty(given, frames));
 }
 
-void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
+void estimate_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings) {
   if (!settings.estimates_uncertainty() || correlation_method(settings.method).tracks_dots) return;
   InterrogationGrid const grid = final_grid(settings, frames.reference().columns(), frames.reference().rows());
   GLADSTONE_EXPECTS(grid.size() == field.size());
@@ -149,7 +149,7 @@ void estimate_uncertainty(DisplacementField& field, FramePair const& frames, Cor
     if (field.status[i] != VectorStatus::valid) field.sigma_px[i] = {not_a_number, not_a_number};
 }
 
-void complete_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
+void complete_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings) {
   bool const left_out =
       std::find(field.reason.begin(), field.reason.end(), VectorReason::uncorrelated) != field.reason.end();
   if (field.sigma_px.empty() || left_out) estimate_uncertainty(field, frames, settings);

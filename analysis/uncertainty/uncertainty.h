@@ -80,11 +80,11 @@ std::string uncertainty_caveat(CorrelationSettings const& settings);
 /// uncertainty of vectors whose status is not valid is set to NaN; replaced vectors, for example, were not measured in
 /// their own window.
 /// @param field  result of a correlator for these frames and settings
-void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
+void estimate_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
 /// Estimates field.sigma_px if it is empty, or if the decorrelation test has invalidated vectors since. In all other
 /// cases, an existing estimate remains. After the test, the uncertainties of all vectors are recomputed, because
 /// invalidated vectors must not affect the deformation of the frames.
-void complete_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
+void complete_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -47,8 +47,7 @@ class NodeReader {
 }  // namespace
 
 bool is_three_component_file(std::string const& path) {
-  bool const hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
-  return hdf5 && Hdf5Reader(path).attribute("filetype") == stereo_filetype;
+  return has_hdf5_ending(path) && Hdf5Reader(path).attribute("filetype") == stereo_filetype;
 }
 
 ThreeComponentField read_three_components(std::string const& path) {

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"

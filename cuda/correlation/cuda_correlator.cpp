@@ -406,7 +406,7 @@ DisplacementField CudaCorrelator::correlate(Image<double> const& reference, Imag
   return std::move(vectors).field();
 }
 
-DisplacementField CudaCorrelator::correlate_pair(FramePair const& frames) const {
+DisplacementField CudaCorrelator::correlate_pair(StoredFrames const& frames) const {
   auto const* const here = dynamic_cast<DeviceFrames const*>(&frames);
   return here ? correlate(here->image(Frame::reference), here->image(Frame::flow)) : Correlator::correlate_pair(frames);
 }

@@ -20,7 +20,7 @@ class CudaCorrelator final : public Correlator {
   /// Like Correlator::correlate(). @throws DeviceError in addition
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override;
   /// Frames rendered on this device are correlated without a copy to the host.
-  DisplacementField correlate_pair(FramePair const& frames) const override;
+  DisplacementField correlate_pair(StoredFrames const& frames) const override;
   /// Correlates images in device memory; the work that produces them must be queued on the default stream.
   DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) const;
   /// Queues the correlation; the vectors remain on the device until the next pair. With several passes, it waits for

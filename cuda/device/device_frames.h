@@ -9,7 +9,7 @@
 namespace gladstone::cuda {
 
 /// Grey levels of frames A and B in device memory; copied to the host on first access.
-class DeviceFrames final : public FramePair {
+class DeviceFrames final : public StoredFrames {
  public:
   DeviceFrames(int columns, int rows);
 

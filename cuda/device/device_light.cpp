@@ -47,11 +47,11 @@ void DeviceLight::take_from(Image<double> const& white) {
   for (auto& light : light_) take_from_white(paper.data(), light.data(), pixels());
 }
 
-LightPair DeviceLight::to_host(PinnedBuffer& staging) const {
+FramePair<double> DeviceLight::to_host(PinnedBuffer& staging) const {
   auto* const staged = static_cast<double*>(staging.reserve(frame_count * pixels() * sizeof(double)));
   CopyToHost const reference(staged, light_[0].data(), pixels());
   CopyToHost const flow(staged + pixels(), light_[1].data(), pixels());
-  LightPair pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
+  FramePair<double> pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
   auto const copy_on = [&](CopyToHost const& copy, Image<double>& image) {
     double const* const arrived = copy.wait();
     parallel_chunks(pixels(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
@@ -63,7 +63,7 @@ LightPair DeviceLight::to_host(PinnedBuffer& staging) const {
   return pair;
 }
 
-LightPair DeviceLight::to_host() const {
+FramePair<double> DeviceLight::to_host() const {
   PinnedBuffer staging;
   return to_host(staging);
 }
@@ -97,7 +97,7 @@ RecordedFrames DeviceLight::record(Detector const& detector) const {
   return {std::move(frames), counted[0], counted[1]};
 }
 
-std::unique_ptr<FramePair const> DeviceLight::ideal(Detector const& detector) const {
+std::unique_ptr<StoredFrames const> DeviceLight::ideal(Detector const& detector) const {
   auto frames = std::make_unique<DeviceFrames>(columns_, rows_);
   for (Frame const frame : {Frame::reference, Frame::flow}) {
     ideal_levels(detector.pixel(), light_[static_cast<int>(frame)].data(), pixels(), frames->levels(frame));

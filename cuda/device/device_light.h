@@ -18,12 +18,12 @@ class DeviceLight final : public RenderedLight {
   void take_from(Image<double> const& white);
   /// Copies the light to the host. @param staging  page-locked buffer; all cores copy one frame from it while the other
   /// is being transferred
-  LightPair to_host(PinnedBuffer& staging) const;
+  FramePair<double> to_host(PinnedBuffer& staging) const;
 
-  LightPair to_host() const override;
+  FramePair<double> to_host() const override;
   double brightest() const override;
   RecordedFrames record(Detector const& detector) const override;
-  std::unique_ptr<FramePair const> ideal(Detector const& detector) const override;
+  std::unique_ptr<StoredFrames const> ideal(Detector const& detector) const override;
 
  private:
   std::size_t pixels() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }

@@ -2,7 +2,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include "python/src/call.h"
 #include "python/src/setup_text.h"
 #include "render/base/units.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/backend.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
@@ -62,7 +62,7 @@ nb::list previews_of(SetupText const& setup, std::string const& device, nb::hand
 /// Renders a setup with a table [sequence] into a folder. @return contents of its summary.json
 std::string render_sequence(std::string const& setup, std::vector<std::string> const& overrides,
                             std::string const& folder, std::string const& device_name) {
-  SequenceRenderer sequence(setup, overrides);
+  SequenceRenderer sequence(read_setup_document(setup, overrides), setup);
   sequence.refuse_over_inputs(folder);
   RenderedSequence const rendered = sequence.render(*open_device(device_name).renderer, folder, true);
   log_warnings(rendered.warnings);

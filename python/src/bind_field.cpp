@@ -44,14 +44,14 @@ Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::strin
   return run(
       [&] {
         ImageSamples const samples_a = image_samples(a, "a"), samples_b = image_samples(b, "b");
-        Image<double> const reference = read_samples(samples_a), flow = read_samples(samples_b);
+        HostFrames const frames(read_samples(samples_a), read_samples(samples_b));
         CorrelationFile const given = default_correlation(overrides);
-        Measurement measured = correlate_frames("a", reference, "b", flow, given.settings, open_device(device_name));
-        if (auto const advice = locking_advice(reference); advice && frames_correlate(measured.field))
+        Measurement measured = correlate_frames("a", "b", frames, given.settings, open_device(device_name));
+        if (auto const advice = locking_advice(frames.reference()); advice && frames_correlate(measured.field))
           measured.field.warnings.push_back(*advice);
         Field field = make_field(std::move(measured), given);
-        field->reference_sha256 = pixel_sha256(reference, samples_a.bits);
-        field->flow_sha256 = pixel_sha256(flow, samples_b.bits);
+        field->reference_sha256 = pixel_sha256(frames.reference(), samples_a.bits);
+        field->flow_sha256 = pixel_sha256(frames.flow(), samples_b.bits);
         return field;
       },
       progress);
@@ -95,7 +95,7 @@ Field load_field(std::string const& path, std::string const& conventions, int im
   field->foreign = file.foreign;
   field->complete = file.complete;
   field->field = apply_conventions(std::move(file.field), file.conventions, image_rows);
-  if (file.foreign || !(path.ends_with(".h5") || path.ends_with(".hdf5"))) return field;
+  if (file.foreign || !has_hdf5_ending(path)) return field;
   Hdf5Reader const measured(path);
   field->resolved = measured.attribute("setup");
   field->device = measured.attribute("device");

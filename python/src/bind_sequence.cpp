@@ -2,7 +2,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "python/src/arrays.h"

@@ -29,7 +29,7 @@ PairCase::PairCase(std::string camera, SetupDocument document, Backend const& de
     : camera_(std::move(camera)), loaded_(load_case_setup(std::move(document))) {
   RecordedCase finished = render_case_in_memory(loaded_, *device.renderer, known);
   outcome_ = judge_case(loaded_, finished.prepared, finished.rendered, finished.frames, *device.renderer);
-  store_images(outcome_.reference, outcome_.flow);
+  store_images(outcome_.levels);
   prepared_ = std::move(finished.prepared);
   rendered_ = std::move(finished.rendered);
   frames_ = std::move(finished.frames);
@@ -39,21 +39,21 @@ PairCase::PairCase(std::string camera, SetupDocument document, Backend const& de
 PairCase::PairCase(std::string folder)
     : loaded_(load_case_setup(in_case(folder, case_file::setup), {})), folder_(std::move(folder)) {
   stored_truth_ = read_truth(in_case(folder_, case_file::truth));
-  Image<std::uint16_t> const reference = grey_levels(read_image(in_case(folder_, case_file::reference)));
-  Image<std::uint16_t> const flow = grey_levels(read_image(in_case(folder_, case_file::flow)));
-  outcome_.reference_sha256 = pixel_sha256(reference);
-  outcome_.flow_sha256 = pixel_sha256(flow);
+  FramePair<std::uint16_t> const levels{grey_levels(read_image(in_case(folder_, case_file::reference))),
+                                        grey_levels(read_image(in_case(folder_, case_file::flow)))};
+  outcome_.reference_sha256 = pixel_sha256(levels.reference);
+  outcome_.flow_sha256 = pixel_sha256(levels.flow);
   outcome_.accuracy = truth_accuracy(stored_truth_, truth_tolerance_px);
-  store_images(reference, flow);
+  store_images(levels);
   summary_ = read_text_file(in_case(folder_, case_file::summary));
-  auto const levels = nlohmann::json::json_pointer("/image_error/levels");
-  nlohmann::json const stored = nlohmann::json::parse(summary_).value(levels, nlohmann::json());
+  nlohmann::json::json_pointer const image_error("/image_error/levels");
+  nlohmann::json const stored = nlohmann::json::parse(summary_).value(image_error, nlohmann::json());
   if (stored.is_number()) outcome_.image_error_levels = stored.get<double>();
 }
 
-void PairCase::store_images(Image<std::uint16_t> const& reference, Image<std::uint16_t> const& flow) {
-  images_.assign(reference.begin(), reference.end());
-  images_.insert(images_.end(), flow.begin(), flow.end());
+void PairCase::store_images(FramePair<std::uint16_t> const& levels) {
+  images_.assign(levels.reference.begin(), levels.reference.end());
+  images_.insert(images_.end(), levels.flow.begin(), levels.flow.end());
 }
 
 std::string PairCase::summary() {

@@ -44,7 +44,7 @@ class PairCase {
   RenderedCase const& rendered(Backend const& device);
 
  private:
-  void store_images(Image<std::uint16_t> const& reference, Image<std::uint16_t> const& flow);
+  void store_images(FramePair<std::uint16_t> const& levels);
 
   std::string camera_;
   CaseSetup loaded_;

@@ -6,26 +6,32 @@
 
 namespace gladstone {
 
-/// Pair of frames of equal size, in host or device memory: the input of a correlator. Grey levels are real numbers.
-class FramePair {
+/// Frame A (BOS: the reference image) and frame B (BOS: the measurement image), of equal size, in host memory.
+template <class Pixel>
+struct FramePair {
+  Image<Pixel> reference, flow;
+};
+
+/// Grey levels of a pair of frames in host or device memory, as real numbers: the input of a correlator.
+class StoredFrames {
  public:
-  virtual ~FramePair() = default;
-  /// Returns frame A (BOS: the reference image) in host memory. For frames in device memory, the first call copies them
-  /// to the host; it must not run concurrently with another call.
+  virtual ~StoredFrames() = default;
+  /// Returns frame A in host memory. For frames in device memory, the first call copies them to the host; it must not
+  /// run concurrently with another call.
   virtual Image<double> const& reference() const = 0;
-  /// Returns frame B (BOS: the measurement image) in host memory, under the same conditions as reference().
+  /// Returns frame B in host memory, under the same conditions as reference().
   virtual Image<double> const& flow() const = 0;
 };
 
-/// Pair of frames in host memory.
-class HostFrames final : public FramePair {
+/// Grey levels in host memory.
+class HostFrames final : public StoredFrames {
  public:
-  HostFrames(Image<double> reference, Image<double> flow) : reference_(std::move(reference)), flow_(std::move(flow)) {}
-  Image<double> const& reference() const override { return reference_; }
-  Image<double> const& flow() const override { return flow_; }
+  HostFrames(Image<double> reference, Image<double> flow) : levels_{std::move(reference), std::move(flow)} {}
+  Image<double> const& reference() const override { return levels_.reference; }
+  Image<double> const& flow() const override { return levels_.flow; }
 
  private:
-  Image<double> reference_, flow_;
+  FramePair<double> levels_;
 };
 
 }  // namespace gladstone

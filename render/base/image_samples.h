@@ -23,7 +23,7 @@ struct ImageSamples {
 
 /// Frames copied from ImageSamples, and the number of NaN or infinite pixels of each.
 struct CopiedFrames {
-  std::unique_ptr<FramePair> frames;
+  std::unique_ptr<StoredFrames> frames;
   std::array<std::size_t, 2> not_finite;
 };
 

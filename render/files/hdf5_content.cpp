@@ -2,7 +2,6 @@
 
 #include <hdf5.h>
 
-#include <memory>
 #include <utility>
 
 #include "render/base/version.h"

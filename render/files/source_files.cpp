@@ -104,6 +104,8 @@ std::string dataset_sha256(std::string const& path) {
   return hash.finish();
 }
 
+bool has_hdf5_ending(std::string const& path) { return path.ends_with(".h5") || path.ends_with(".hdf5"); }
+
 std::string byte_sha256(std::string const& path) {
   InputFile const file(path);
   Sha256 hash;
@@ -119,6 +121,11 @@ std::string byte_sha256(std::string const& path) {
 void SourceFiles::add(std::string name, std::string path, Holds holds) {
   std::string hash = hash_of(path, holds);
   add(std::move(name), std::move(path), holds, std::move(hash));
+}
+
+void SourceFiles::add(std::string name, std::string path) {
+  Holds const holds = has_hdf5_ending(path) ? Holds::datasets : Holds::bytes;
+  add(std::move(name), std::move(path), holds);
 }
 
 void SourceFiles::add(std::string name, std::string path, Holds holds, std::string sha256) {

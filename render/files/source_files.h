@@ -23,6 +23,9 @@ std::string pixel_sha256(std::string const& path);
 /// @throws DataError
 std::string dataset_sha256(std::string const& path);
 
+/// Returns true for the name of an HDF5 file: .h5 or .hdf5.
+bool has_hdf5_ending(std::string const& path);
+
 /// Computes the SHA-256 hash of a file's bytes. @throws DataError
 std::string byte_sha256(std::string const& path);
 
@@ -34,6 +37,9 @@ class SourceFiles {
 
   /// Adds a file that is about to be read, and hashes it. @throws DataError
   void add(std::string name, std::string path, Holds holds);
+  /// Adds a file that is about to be read, and hashes the datasets of an HDF5 file or the bytes of any other.
+  /// @throws DataError
+  void add(std::string name, std::string path);
   /// Adds a file that was hashed when it was read.
   void add(std::string name, std::string path, Holds holds, std::string sha256);
   /// Adds an input that check() skips, since it is written together with the result or cannot change.

@@ -1,13 +1,10 @@
 #include "render/focused_dots/focused_dots_renderer.h"
 
 #include <algorithm>
-#include <cmath>
-#include <memory>
 #include <mutex>
 #include <optional>
 
 #include "render/base/contracts.h"
-#include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/focused_dots/dot_integrator.h"
@@ -56,7 +53,7 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
 }
 
 /// Subtracts the light of the dots from that of a white target if the dots are dark.
-void apply_polarity(Scene const& scene, LightPair& light) {
+void apply_polarity(Scene const& scene, FramePair<double>& light) {
   if (scene.setup.target.polarity != Polarity::dark) return;
   Image<double> const white = render_white_light(scene);
   for (Image<double>* frame : {&light.reference, &light.flow}) {

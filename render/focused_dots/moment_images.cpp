@@ -1,7 +1,5 @@
 #include "render/focused_dots/moment_images.h"
 
-#include <algorithm>
-
 #include "render/base/parallel.h"
 #include "render/focused_dots/one_lane.h"
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <tuple>
 
@@ -11,7 +10,7 @@
 #include "render/base/interrupt.h"
 #include "render/base/units.h"
 #include "render/files/image_file.h"
-#include "render/files/text_file.h"
+#include "render/light/number_table.h"
 
 namespace gladstone {
 namespace {
@@ -154,35 +153,16 @@ void refuse_coincident(std::string const& path, std::vector<Vec2d> const& centre
 }  // namespace
 
 std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
-  LineReader file(path, "a table of points");
-  auto const header = file.next();
-  if (header != "x_mm,y_mm") {
-    throw DataError(ErrorCode::wrong_format, path + ":1",
-                    fmt::format("the header line is \"{}\" (it must be x_mm,y_mm)", excerpt(header.value_or(""))));
-  }
+  NumberTable file(path, "a table of points", {"x_mm", "y_mm"});
   std::vector<Vec2d> centres;
   std::vector<std::size_t> lines;
-  while (auto const line = file.next()) {
-    if (line->empty()) continue;
-    double value[2] = {};
-    char const* at = line->data();
-    char const* const end = at + line->size();
-    bool good = true;
-    for (int i = 0; i < 2 && good; ++i) {
-      auto const [rest, error] = std::from_chars(at, end, value[i]);
-      good = error == std::errc() && std::isfinite(value[i]) && (i == 1 ? rest == end : rest != end && *rest == ',');
-      at = rest + 1;
-    }
-    if (!good) {
-      throw DataError(ErrorCode::syntax, file.place(),
-                      fmt::format("\"{}\" is not two finite numbers x_mm,y_mm", excerpt(*line)));
-    }
-    Vec2d const centre{value[0] * unit::millimetre, value[1] * unit::millimetre};
+  while (auto const row = file.next()) {
+    Vec2d const centre{(*row)[0] * unit::millimetre, (*row)[1] * unit::millimetre};
     if (std::max(std::abs(centre.x), std::abs(centre.y)) > farthest) {
       throw DataError(ErrorCode::out_of_range, file.place(),
                       fmt::format("the dot at {:.6g}, {:.6g} mm is too far from the axis to be imaged ({:.6g} mm at "
                                   "most, ten times the distance to the lens); positions are in mm",
-                                  value[0], value[1], farthest / unit::millimetre));
+                                  (*row)[0], (*row)[1], farthest / unit::millimetre));
     }
     require_room(centres, path, "dots");
     centres.push_back(centre);

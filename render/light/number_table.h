@@ -20,6 +20,8 @@ class NumberTable {
   /// Returns the next row, skipping empty lines, or nullopt at the end of the file.
   /// @throws DataError with file:line if a line does not consist of one finite number per column
   std::optional<std::vector<double>> next();
+  /// Number of the line of the row last returned by next().
+  std::size_t number() const { return lines_.number(); }
   /// Location "file:line" of the row last returned by next().
   std::string place() const { return lines_.place(); }
 

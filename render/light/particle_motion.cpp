@@ -1,7 +1,6 @@
 #include "render/light/particle_motion.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "render/base/parallel.h"
 #include "render/light/particle_draw.h"

@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <functional>
 #include <span>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "render/base/lanes.h"

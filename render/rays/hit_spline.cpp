@@ -1,5 +1,7 @@
 #include "render/rays/hit_spline.h"
 
+#include <algorithm>
+
 namespace gladstone {
 namespace {
 

@@ -1,7 +1,6 @@
 #include "render/rays/particles_in_view.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "render/base/parallel.h"

@@ -1,7 +1,6 @@
 #include "render/rays/rays_ladder.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "render/scene/spot.h"
 

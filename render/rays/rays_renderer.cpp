@@ -75,7 +75,7 @@ void finish_rays(IdealView const& view, Ray<double> (&ray)[N], RayAccount<double
 }
 
 /// Subtracts the light of bright dots from a white target.
-void take_from_white(Scene const& scene, LightPair& light) {
+void take_from_white(Scene const& scene, FramePair<double>& light) {
   Image<double> const white = render_white_target(scene);
   for (Image<double>* frame : {&light.reference, &light.flow}) {
     std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),

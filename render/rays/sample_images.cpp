@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -25,7 +24,7 @@ constexpr std::size_t sample_sources = 96;
 /// Renders some particles of a PIV scene.
 /// @return whether the next finer rule was used
 bool render_particles(Scene const& scene, RenderPlan const& plan, std::vector<std::size_t> const& some, SampleRays rays,
-                      LightPair& light) {
+                      FramePair<double>& light) {
   std::optional<AiryTable> airy;
   ParticleLaunches const launches(scene, plan, make_spot(scene, airy), RenderImages::yes);
   bool const next_rule = rays == SampleRays::next_rule && launches.ladder[0].rule.view();
@@ -108,7 +107,7 @@ double measure_image_error(Scene const& scene, RenderPlan const& plan, double le
   SampleImages const a = render_sample(std::move(one), plan),
                      b = render_sample(std::move(other), plan, SampleRays::next_rule);
   double worse = std::numeric_limits<double>::quiet_NaN();
-  for (auto const frame : {&LightPair::reference, &LightPair::flow}) {
+  for (auto const frame : {&FramePair<double>::reference, &FramePair<double>::flow}) {
     worse = std::fmax(worse, mean_square(a.light.*frame, b.light.*frame, level, a.share));
   }
   return std::sqrt(b.next_rule ? worse : worse / 2) / level;

@@ -14,7 +14,7 @@ enum class SampleRays {
 
 /// Images of up to 96 sources, spread evenly over those in view.
 struct SampleImages {
-  LightPair light;
+  FramePair<double> light;
   double share = 1;        ///< number of sources in view per source of the sample
   bool next_rule = false;  ///< true: rendered with the next finer rule
 };

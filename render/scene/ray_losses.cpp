@@ -4,7 +4,6 @@
 #include <mutex>
 #include <optional>
 #include <type_traits>
-#include <utility>
 
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"

@@ -26,7 +26,7 @@ RecordedFrames HostLight::record(Detector const& detector) const {
           flow.saturated};
 }
 
-std::unique_ptr<FramePair const> HostLight::ideal(Detector const& detector) const {
+std::unique_ptr<StoredFrames const> HostLight::ideal(Detector const& detector) const {
   return std::make_unique<HostFrames const>(detector.ideal(light_.reference), detector.ideal(light_.flow));
 }
 

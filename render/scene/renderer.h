@@ -41,7 +41,7 @@ struct RenderingAccuracy {
 /// Result of rendering a scene.
 struct Rendering {
   RenderPlan plan;                                ///< plan by which it was rendered, with its method
-  LightPair light;                                ///< empty if images were not requested or remain on the device
+  FramePair<double> light;                        ///< empty if images were not requested or remain on the device
   std::shared_ptr<RenderedLight const> in_place;  ///< light on the device; only with RenderImages::in_place
   GroundTruth truth;
   StatusCounts statuses{};

@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-SetupDocument read_setup_document(std::string const& path) {
+SetupDocument read_setup_document(std::string const& path, std::vector<std::string> const& overrides) {
   std::string text;
   try {
     text = read_text_file(path, "a setup file", most_setup_bytes);
@@ -20,6 +20,7 @@ SetupDocument read_setup_document(std::string const& path) {
     throw SetupError({{path, "is empty (no key is set); gladstone render --help shows a setup to begin with", "",
                        ErrorCode::syntax}});
   }
+  for (std::string const& assignment : overrides) document.override_key(assignment);
   return document;
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>

@@ -11,7 +11,6 @@
 #include <random>
 #include <utility>
 
-#include "render/base/contracts.h"
 #include "render/base/units.h"
 
 namespace gladstone {

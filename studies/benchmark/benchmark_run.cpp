@@ -4,13 +4,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/errors/deformed_window_truth.h"
 #include "analysis/uncertainty/uncertainty.h"
-#include "render/base/interrupt.h"
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"

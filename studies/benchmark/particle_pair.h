@@ -7,15 +7,13 @@
 #include <random>
 #include <vector>
 
-#include "render/base/image.h"
+#include "render/base/frame_pair.h"
 #include "render/base/vec.h"
 
 namespace gladstone {
 
 /// Pair of particle images with a displacement that is known everywhere.
-struct ParticlePair {
-  Image<double> reference;
-  Image<double> flow;
+struct ParticlePair : FramePair<double> {
   /// Input of window_truth() for the particles visible in both frames: position in frame A [px], displacement [px], and
   /// the geometric mean of the peaks in both images, relative to the brightest particle [1].
   std::vector<Vec2d> dot_reference_px = {}, dot_displacement_px = {};
@@ -45,8 +43,8 @@ inline ParticlePair render_particle_pair(ParticleSettings const& settings,
   std::mt19937_64 bits(settings.seed);
   auto const uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
   double const sigma = settings.diameter_px / 4.0, scale = 1.0 / (std::sqrt(2.0) * sigma);
-  ParticlePair pair{Image<double>(settings.columns, settings.rows, background),
-                    Image<double>(settings.columns, settings.rows, background)};
+  Image<double> const dark(settings.columns, settings.rows, background);
+  ParticlePair pair{{dark, dark}};
   auto const draw = [&](Image<double>& image, Vec2d at, double amplitude) {
     int const column = static_cast<int>(std::floor(at.x + 0.5)), row = static_cast<int>(std::floor(at.y + 0.5));
     double x[2 * half + 1], y[2 * half + 1];

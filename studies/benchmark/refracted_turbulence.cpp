@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <random>
 
@@ -39,8 +38,8 @@ RefractedTurbulence::RefractedTurbulence(std::uint64_t seed, Renderer& renderer)
 ParticlePair RefractedTurbulence::frames(double noise, std::uint64_t noise_seed) const {
   constexpr double background = 25.5, peak = 153.0;  // same values as in render_particle_pair()
   Detector const detector(prepared_.scene.setup.camera, rendered_.exposure_e);
-  std::unique_ptr<FramePair const> const ideal = rendered_.rendering->in_place->ideal(detector);
-  ParticlePair pair{ideal->reference(), ideal->flow()};
+  std::unique_ptr<StoredFrames const> const ideal = rendered_.rendering->in_place->ideal(detector);
+  ParticlePair pair{{ideal->reference(), ideal->flow()}};
   double const brightest = std::max(*std::max_element(pair.reference.begin(), pair.reference.end()),
                                     *std::max_element(pair.flow.begin(), pair.flow.end()));
   std::mt19937_64 bits(noise_seed);

@@ -176,9 +176,7 @@ void add_unusual_values(CaseSetup& loaded) {
 }  // namespace
 
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
-  SetupDocument document = read_setup_document(path);
-  for (auto const& assignment : overrides) document.override_key(assignment);
-  return load_case_setup(std::move(document));
+  return load_case_setup(read_setup_document(path, overrides));
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {

@@ -125,8 +125,8 @@ struct CaseOutcome : RenderedOutcome {
   double image_error_levels = not_measured;
   std::optional<TableError> table_error;  ///< error of the deflection table, if the truth was computed with one
   std::string device, reference_sha256, flow_sha256;
-  Warnings warnings;                     ///< all warnings of the case, those of its preparation first
-  Image<std::uint16_t> reference, flow;  ///< grey levels of the frames
+  Warnings warnings;                ///< all warnings of the case, those of its preparation first
+  FramePair<std::uint16_t> levels;  ///< grey levels of the frames
 };
 
 /// Determines accuracy, grey levels and warnings of a rendered case, logs its warnings, and stores the values used for

@@ -6,7 +6,7 @@
 
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
-#include "render/files/output_file.h"
+#include "render/files/output_destination.h"
 #include "render/scene/setup_document.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/cameras.h"

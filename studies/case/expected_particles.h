@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "render/scene/setup.h"
 
 namespace gladstone {

@@ -2,63 +2,49 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "render/base/not_a_number.h"
-#include "render/base/units.h"
 #include "render/files/hdf5_axes.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/method.h"
 #include "render/scene/particle_scene.h"
+#include "studies/case/truth_columns.h"
 
 namespace gladstone {
 namespace {
 
-std::span<double const> pairs_as_numbers(std::vector<Vec2d> const& values) {
-  static_assert(sizeof(Vec2d) == 2 * sizeof(double));
-  return {reinterpret_cast<double const*>(values.data()), 2 * values.size()};
-}
-
-/// Dataset of /particles with two numbers per particle: a column that dots also have, or one of particles only.
-struct ParticlePairs {
-  char const* name;
-  std::vector<Vec2d> GroundTruth::*shared;
-  std::vector<Vec2d> ParticleTruth::*own;
-  char const* units;
-  char const* description;
-  char const* axes;
-
-  std::vector<Vec2d> const& of(GroundTruth const& truth) const { return shared ? truth.*shared : truth.particles.*own; }
-  std::vector<Vec2d>& of(GroundTruth& truth) const { return shared ? truth.*shared : truth.particles.*own; }
-};
-
-constexpr std::array<ParticlePairs, 7> particle_pairs{{
-    {"/particles/reference_px", &GroundTruth::reference_px, nullptr, "px",
+constexpr std::array<TruthColumn, 7> particle_columns{{
+    {"/reference_px", &GroundTruth::reference_px, "px",
      "centroid of the light that passes the stop, at the first pulse; nan: not illuminated, or no ray passes",
      "particle, (column, row)"},
-    {"/particles/displacement_px", &GroundTruth::displacement_px, nullptr, "px",
+    {"/displacement_px", &GroundTruth::displacement_px, "px",
      "centroid at the second pulse minus that at the first, in the image (u right, v down); nan: not imaged at both",
      "particle, (u, v)"},
-    {"/particles/displacement_error_px", &GroundTruth::displacement_error_px, nullptr, "px",
+    {"/displacement_error_px", &GroundTruth::displacement_error_px, "px",
      "standard error of displacement_px by component (68 % of the errors lie within it); nan: unknown",
      "particle, (u, v)"},
-    {"/particles/displacement_std_px", &GroundTruth::displacement_std_px, nullptr, "px",
+    {"/displacement_std_px", &GroundTruth::displacement_std_px, "px",
      "weighted standard deviation of the rays on the sensor at the second pulse", "particle, (u, v)"},
-    {"/particles/reference_ambient_px", nullptr, &ParticleTruth::reference_ambient_px, "px",
-     "as reference_px, without the medium", "particle, (column, row)"},
-    {"/particles/displacement_ambient_px", nullptr, &ParticleTruth::displacement_ambient_px, "px",
-     "as displacement_px, without the medium", "particle, (u, v)"},
-    {"/particles/flux", &GroundTruth::flux, nullptr, "1", "photons that reach the plane of the sensor at each pulse",
-     "particle, pulse"},
+    {"/reference_ambient_px", nullptr, "px", "as reference_px, without the medium", "particle, (column, row)",
+     &ParticleTruth::reference_ambient_px},
+    {"/displacement_ambient_px", nullptr, "px", "as displacement_px, without the medium", "particle, (u, v)",
+     &ParticleTruth::displacement_ambient_px},
+    {"/flux", &GroundTruth::flux, "1", "photons that reach the plane of the sensor at each pulse", "particle, pulse"},
 }};
 
-/// @throws DataError if a dataset's length does not match the others
-void require_count(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
-  if (there == needed) return;
-  throw DataError(ErrorCode::wrong_shape, path,
-                  dataset + " has " + std::to_string(there) + " values, but " + std::to_string(needed) +
-                      " are required; render the case again");
+TruthGroup const& particles_group() {
+  static TruthGroup const group{
+      "/particles",
+      "particle",
+      "/pulse",
+      "pulse",
+      "rays counted at each pulse",
+      "planned number of rays of the particle at each pulse; 0: not traced, since its light cannot reach the sensor",
+      "displacement = second pulse minus first; column right and row down from 0 at the first pixel's centre; the "
+      "medium is present at both pulses",
+      particle_columns};
+  return group;
 }
 
 /// Returns minimum, median and maximum of positive numbers.
@@ -91,39 +77,12 @@ void write_particle_truth(std::string const& path, Scene const& scene, Rendering
              "the camera",
              "pulse, particle, (x, y, z)");
   axes.name("/particles/position_m", {"/pulse", "/particles/particle", "/coordinate"});
-  for (ParticlePairs const& pairs : particle_pairs) {
-    file.write(pairs.name, pairs_as_numbers(pairs.of(truth)), {count, 2}, pairs.units, pairs.description, pairs.axes);
-    axes.name(pairs.name, {"/particles/particle", pairs.shared == &GroundTruth::flux ? "/pulse" : "/component"});
-  }
+  write_sources(file, axes, particles_group(), rendering);
   file.write("/particles/diameter_m", std::span<double const>(truth.particles.diameter_m), {count}, "m",
              "diameter of the particle", "particle");
-  std::vector<std::int64_t> rays;
-  for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
-  file.write("/particles/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted at each pulse",
-             "particle, pulse");
-  file.write(
-      "/particles/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
-      "planned number of rays of the particle at each pulse; 0: not traced, since its light cannot reach the sensor",
-      "particle");
-  std::vector<std::int64_t> counts;
-  for (auto const& frame : rendering.statuses) counts.insert(counts.end(), frame.begin(), frame.end());
-  file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
-             "rays by status: alive, missed_sensor, vignetted, total_internal_reflection, lost_in_medium, missed_lens",
-             "pulse, status");
   axes.name("/particles/diameter_m", {"/particles/particle"});
-  axes.name("/particles/rays", {"/particles/particle", "/pulse"});
-  axes.name("/particles/rays_planned", {"/particles/particle"});
-  axes.name("/rays/status", {"/pulse", "/rays/kind"});
   axes.attach();
-  Setup const& setup = scene.setup;
-  file.attribute("/particles", "interpolation",
-                 setup.medium.interpolation == FieldInterpolation::cubic_bspline ? "cubic_bspline" : "trilinear");
-  file.attribute("/particles", "conventions",
-                 "displacement = second pulse minus first; column right and row down from 0 at the first pixel's "
-                 "centre; the medium is present at both pulses");
-  file.attribute("/", "method", to_string(rendering.plan.method));
-  file.attribute("/particles", "step_mm", rendering.plan.step * 1e3);
-  file.attribute("/particles", "magnification", scene.imaging.magnification);
+  write_source_attributes(file, particles_group(), scene, rendering.plan);
   file.attribute("/particles", "path_error_m", scene.particles.path.error);
   file.attribute("/particles", "lag_error_m", scene.particles.path.lag_error);
   if (scene.mie) file.attribute("/particles", "scattering_table_error", scene.mie->error());
@@ -135,7 +94,7 @@ GroundTruth read_particle_truth(std::string const& path) {
   GroundTruth truth;
   std::vector<double> const position = file.read("/particles/position_m");
   std::size_t const count = position.size() / 6;
-  require_count(path, "/particles/position_m", position.size(), 6 * count);
+  require_length(path, "/particles/position_m", position.size(), 6 * count);
   truth.resize(count);
   for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px})
     theory->assign(count, {not_a_number, not_a_number});
@@ -144,22 +103,9 @@ GroundTruth read_particle_truth(std::string const& path) {
     Vec3d const p{position[3 * i], position[3 * i + 1], position[3 * i + 2]};
     (i < count ? truth.position_m[i] : truth.particles.second_m[i - count]) = p;
   }
-  for (ParticlePairs const& pairs : particle_pairs) {
-    std::vector<double> const values = file.read(pairs.name);
-    require_count(path, pairs.name, values.size(), 2 * count);
-    std::vector<Vec2d>& column = pairs.of(truth);
-    column.resize(count);
-    for (std::size_t i = 0; i < count; ++i) column[i] = {values[2 * i], values[2 * i + 1]};
-  }
+  read_sources(file, path, particles_group(), truth);
   truth.particles.diameter_m = file.read("/particles/diameter_m");
-  require_count(path, "/particles/diameter_m", truth.particles.diameter_m.size(), count);
-  std::vector<std::int64_t> const rays = file.read_integers("/particles/rays");
-  require_count(path, "/particles/rays", rays.size(), 2 * count);
-  for (std::size_t i = 0; i < count; ++i) truth.rays[i] = {rays[2 * i], rays[2 * i + 1]};
-  if (file.has("/particles/rays_planned")) {
-    truth.rays_planned = file.read_integers("/particles/rays_planned");
-    require_count(path, "/particles/rays_planned", truth.rays_planned.size(), count);
-  }
+  require_length(path, "/particles/diameter_m", truth.particles.diameter_m.size(), count);
   return truth;
 }
 

@@ -70,7 +70,7 @@ Image<std::uint16_t> record_part(CasePreview const& preview, Detector const& det
 }
 
 /// Returns the exposure of both frames, or of the only frame of a calibration [e].
-double preview_exposure(Scene const& scene, LightPair const& light) {
+double preview_exposure(Scene const& scene, FramePair<double> const& light) {
   CameraSetup const& camera = scene.setup.camera;
   if (scene.setup.experiment().correlated) return choose_exposure(scene, HostLight(light));
   double const brightest = *std::max_element(light.reference.begin(), light.reference.end());

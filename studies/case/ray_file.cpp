@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "render/base/error.h"
@@ -11,7 +10,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
-#include "render/files/text_file.h"
+#include "render/light/number_table.h"
 #include "render/scene/trace_ray.h"
 
 namespace gladstone {
@@ -91,7 +90,9 @@ Ray<double> ray_of(double const* v, std::string const& place, double farthest) {
                                 "most, ten times the distance from the dots to the lens); positions are in mm",
                                 v[0], v[1], v[2], farthest / unit::millimetre));
   }
-  return {start, unit_direction({v[3], v[4], v[5]})};
+  Vec3d const direction{v[3], v[4], v[5]};
+  if (direction == Vec3d{}) throw DataError(ErrorCode::syntax, place, "the direction is zero; give any other vector");
+  return {start, unit_direction(direction)};
 }
 
 }  // namespace
@@ -102,41 +103,17 @@ std::vector<Ray<double>> rays_of(std::vector<double> const& rows, std::string co
     double const* const v = rows.data() + i;
     std::string const place = fmt::format("{}:{}", name, i / 6);
     bool const finite = std::all_of(v, v + 6, [](double value) { return std::isfinite(value); });
-    if (!finite || Vec3d{v[3], v[4], v[5]} == Vec3d{}) {
-      throw DataError(ErrorCode::syntax, place, "is not six finite numbers with a direction that is not zero");
-    }
+    if (!finite) throw DataError(ErrorCode::syntax, place, "is not six finite numbers");
     rays.push_back(ray_of(v, place, farthest));
   }
   return rays;
 }
 
 std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
-  LineReader file(path, "a table of rays with --rays");
-  auto const header = file.next();
-  if (header != "x_mm,y_mm,z_mm,dx,dy,dz") {
-    throw DataError(
-        ErrorCode::wrong_format, path + ":1",
-        fmt::format("the header line is \"{}\" (it must be x_mm,y_mm,z_mm,dx,dy,dz)", excerpt(header.value_or(""))));
-  }
+  NumberTable file(path, "a table of rays with --rays", {"x_mm", "y_mm", "z_mm", "dx", "dy", "dz"});
   std::vector<Ray<double>> rays;
-  while (auto const line = file.next()) {
-    if (line->empty()) continue;
-    double v[6] = {};
-    char const* at = line->data();
-    char const* const end = at + line->size();
-    bool good = true;
-    for (int i = 0; i < 6 && good; ++i) {
-      auto const [rest, error] = std::from_chars(at, end, v[i]);
-      good = error == std::errc() && std::isfinite(v[i]) && (i == 5 ? rest == end : rest != end && *rest == ',');
-      at = rest + 1;
-    }
-    Vec3d const direction{v[3], v[4], v[5]};
-    if (!good || direction == Vec3d{}) {
-      throw DataError(
-          ErrorCode::syntax, file.place(),
-          fmt::format("\"{}\" is not six finite numbers with a direction that is not zero", excerpt(*line)));
-    }
-    Ray<double> const ray = ray_of(v, file.place(), farthest);
+  while (auto const row = file.next()) {
+    Ray<double> const ray = ray_of(row->data(), file.place(), farthest);
     require_room(rays, path, "rays");
     rays.push_back(ray);
   }

@@ -1,8 +1,5 @@
 #include "studies/case/render_cost.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/focused_dots/focused_dots.h"

@@ -23,7 +23,6 @@
 #include "render/files/sha256.h"
 #include "render/files/source_files.h"
 #include "render/files/stop_point.h"
-#include "render/scene/setup_document.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
 #include "studies/case/log_silencer.h"
@@ -38,12 +37,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-SetupDocument read_sequence_document(std::string const& path, std::vector<std::string> const& overrides) {
-  SetupDocument document = read_setup_document(path);
-  for (std::string const& assignment : overrides) document.override_key(assignment);
-  return document;
-}
 
 /// Hashes of input files, each computed once.
 class InputHashes {
@@ -246,8 +239,8 @@ class SequenceRendering {
 
 }  // namespace
 
-SequenceRenderer::SequenceRenderer(std::string path, std::vector<std::string> overrides)
-    : path_(std::move(path)), overrides_(std::move(overrides)), first_(path_, overrides_) {
+SequenceRenderer::SequenceRenderer(SetupDocument document, std::string path)
+    : path_(std::move(path)), document_(std::move(document)), first_(document_.copy(), path_) {
   std::optional<SequenceSetup> const sequence = first_.first_setup().sequence;
   if (!sequence)
     throw SetupError(
@@ -255,18 +248,19 @@ SequenceRenderer::SequenceRenderer(std::string path, std::vector<std::string> ov
   first_pair_ = sequence->pair;
   pair_count_ = sequence->frames - 1;
   if (sequence->consecutive) return;
-  SetupDocument document = read_sequence_document(path_, overrides_);
-  check_fields(document);
-  pair_count_ = sequence_fields(document).size();
+  SetupDocument places = document_.copy();
+  std::vector<std::string> const files = sequence_fields(places);
+  check_fields(files);
+  pair_count_ = files.size();
 }
 
-void SequenceRenderer::check_fields(SetupDocument& document) const {
+void SequenceRenderer::check_fields(std::vector<std::string> const& files) const {
   FieldSetup const& field = first_.first_setup().medium.field;
   std::optional<std::array<int, 3>> first_size;
   std::string first_name;
-  std::string const where = document.root().table("sequence").where("files");
+  std::string const where = document_.copy().root().table("sequence").where("files");
   std::vector<SetupProblem> problems;
-  for (std::string const& file : sequence_fields(document)) {
+  for (std::string const& file : files) {
     std::string problem;
     ErrorCode code = ErrorCode::inconsistent;
     try {
@@ -295,9 +289,9 @@ void SequenceRenderer::check_fields(SetupDocument& document) const {
 }
 
 SetupRenderer SequenceRenderer::pair_setup(std::size_t number) const {
-  std::vector<std::string> overrides = overrides_;
-  overrides.push_back(fmt::format("sequence.pair={}", number));
-  return SetupRenderer(path_, overrides);
+  SetupDocument document = document_.copy();
+  document.override_key(fmt::format("sequence.pair={}", number));
+  return {std::move(document), path_};
 }
 
 void SequenceRenderer::refuse_over_inputs(std::string const& folder) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,9 +28,9 @@ struct RenderedSequence {
 /// All pairs have the exposure of the first one. Only one pair at a time is in memory.
 class SequenceRenderer {
  public:
-  /// @param path  path of the setup file
+  /// @param path  path of the setup file, from which the document was read
   /// @throws SetupError if the setup is invalid
-  SequenceRenderer(std::string path, std::vector<std::string> overrides);
+  SequenceRenderer(SetupDocument document, std::string path);
 
   /// @throws OutputError if rendering into the folder would overwrite one of the setup's input files
   void refuse_over_inputs(std::string const& folder) const;
@@ -47,10 +46,10 @@ class SequenceRenderer {
   /// Returns the setup of a pair.
   SetupRenderer pair_setup(std::size_t number) const;
   /// Checks that the density files of a BOS sequence can be read and have one size. @throws SetupError
-  void check_fields(SetupDocument& document) const;
+  void check_fields(std::vector<std::string> const& files) const;
 
   std::string path_;
-  std::vector<std::string> overrides_;
+  SetupDocument document_;
   SetupRenderer first_;  ///< first pair
   std::size_t first_pair_ = 0, pair_count_ = 0;
 };

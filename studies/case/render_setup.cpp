@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
-#include "render/scene/setup_document.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/json_text.h"
@@ -20,17 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SetupDocument read_document(std::string const& path, std::vector<std::string> const& overrides) {
-  SetupDocument document = read_setup_document(path);
-  for (auto const& assignment : overrides) document.override_key(assignment);
-  if (!describes_sequence(document)) select_pair(document);
-  return document;
-}
-
 }  // namespace
 
-SetupRenderer::SetupRenderer(std::string path, std::vector<std::string> const& overrides)
-    : path_(std::move(path)), document_(read_document(path_, overrides)) {
+SetupRenderer::SetupRenderer(SetupDocument document, std::string path)
+    : path_(std::move(path)), document_(std::move(document)) {
+  if (!describes_sequence(document_)) select_pair(document_);
   for (CameraCase& one : camera_cases(document_)) {
     cameras_.push_back({one.name, load_case_setup(std::move(one.document))});
   }

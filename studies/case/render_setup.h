@@ -50,9 +50,9 @@ struct RenderedSetup {
 /// Reads, checks and renders a setup of any experiment with any number of cameras; implements `gladstone render`.
 class SetupRenderer {
  public:
-  /// @param path  path of the setup file
+  /// @param path  path of the setup file, from which the document was read
   /// @throws SetupError if the setup is invalid
-  SetupRenderer(std::string path, std::vector<std::string> const& overrides);
+  SetupRenderer(SetupDocument document, std::string path);
 
   /// @throws OutputError if rendering into the folder would overwrite one of the setup's input files
   void refuse_over_inputs(std::string const& folder) const;

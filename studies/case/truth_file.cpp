@@ -3,42 +3,42 @@
 #include <algorithm>
 #include <array>
 
-#include "render/base/not_a_number.h"
 #include "render/files/hdf5_axes.h"
-#include "render/method.h"
 #include "studies/case/flat_values.h"
 #include "studies/case/particle_case.h"
+#include "studies/case/truth_columns.h"
 
 namespace gladstone {
 namespace {
 
-constexpr char const* dot_axes = "dot, component";
-
-/// Dataset of /dots with two components per dot.
-struct PairDataset {
-  char const* name;
-  std::vector<Vec2d> GroundTruth::*values;
-  char const* units;
-  char const* description;
-};
-
-constexpr std::array<PairDataset, 8> pair_datasets{{
-    {"/dots/reference_px", &GroundTruth::reference_px, "px",
+constexpr std::array<TruthColumn, 8> dot_columns{{
+    {"/reference_px", &GroundTruth::reference_px, "px",
      "radiance-weighted centroid of the rays that pass the stop in the reference image (column, row)"},
-    {"/dots/displacement_px", &GroundTruth::displacement_px, "px",
+    {"/displacement_px", &GroundTruth::displacement_px, "px",
      "centroid in the measurement image (flow.tif) minus that in the reference image (u right, v down)"},
-    {"/dots/displacement_error_px", &GroundTruth::displacement_error_px, "px",
+    {"/displacement_error_px", &GroundTruth::displacement_error_px, "px",
      "standard error of displacement_px by component (68 % of the errors lie within it); nan: unknown"},
-    {"/dots/displacement_std_px", &GroundTruth::displacement_std_px, "px",
+    {"/displacement_std_px", &GroundTruth::displacement_std_px, "px",
      "weighted standard deviation of the rays on the sensor in the measurement image"},
-    {"/dots/flux", &GroundTruth::flux, "fully lit px",
-     "light of the dot in the reference and in the measurement image"},
-    {"/dots/eq9_px", &GroundTruth::eq9_px, "px",
+    {"/flux", &GroundTruth::flux, "fully lit px", "light of the dot in the reference and in the measurement image"},
+    {"/eq9_px", &GroundTruth::eq9_px, "px",
      "Rajendran et al. eq. 9 along the straight chief ray, with lever arm Z_D (u right, v down)"},
-    {"/dots/chief_px", &GroundTruth::chief_px, "px",
-     "eq. 9 with the distance of each slice from the dots as lever arm"},
-    {"/dots/eq9_cone_px", &GroundTruth::eq9_cone_px, "px", "eq. 9 averaged over the dot and the aperture"},
+    {"/chief_px", &GroundTruth::chief_px, "px", "eq. 9 with the distance of each slice from the dots as lever arm"},
+    {"/eq9_cone_px", &GroundTruth::eq9_cone_px, "px", "eq. 9 averaged over the dot and the aperture"},
 }};
+
+TruthGroup const& dots_group() {
+  static TruthGroup const group{"/dots",
+                                "dot",
+                                "/frame",
+                                "frame (reference, flow)",
+                                "rays counted in each frame",
+                                "planned number of rays of the dot in each frame",
+                                "displacement = flow minus reference; column right and row down from 0 at the first "
+                                "pixel's centre; dots appear displaced against grad n",
+                                dot_columns};
+  return group;
+}
 
 void write_field_map(Hdf5Writer& file, FieldMap const& field, Hdf5Axes& axes) {
   auto const columns = static_cast<std::size_t>(field.density.columns());
@@ -86,62 +86,23 @@ void write_truth(std::string const& path, Scene const& scene, Rendering const& r
              "dot centres in the world frame: X right, Y up as the camera sees them, Z towards the camera",
              "dot, (x, y, z)");
   axes.name("/dots/position_m", {"/dots/dot", "/coordinate"});
-  for (PairDataset const& dataset : pair_datasets) {
-    file.write(dataset.name, flat(truth.*dataset.values), {count, 2}, dataset.units, dataset.description, dot_axes);
-    axes.name(dataset.name, {"/dots/dot", dataset.values == &GroundTruth::flux ? "/frame" : "/component"});
-  }
-  std::vector<std::int64_t> rays;
-  for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
-  file.write("/dots/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted in each frame",
-             "dot, frame (reference, flow)");
-  file.write("/dots/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
-             "planned number of rays of the dot in each frame", "dot");
+  write_sources(file, axes, dots_group(), rendering);
   std::vector<std::int64_t> by_table;
   for (TruthPath const by : truth.path) by_table.push_back(by == TruthPath::table ? 1 : 0);
   file.write("/dots/by_table", std::span<std::int64_t const>(by_table), {count}, "1",
              "1: the truth is the integral of a deflection table over the light cone, corrected by the dot's rays; 0: "
              "it is the centroid of the rays",
              "dot");
-  std::vector<std::int64_t> counts;
-  for (auto const& frame : rendering.statuses) counts.insert(counts.end(), frame.begin(), frame.end());
-  file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
-             "rays by status: alive, missed_sensor, vignetted, total_internal_reflection, lost_in_medium, missed_lens",
-             "frame (reference, flow), status");
-  axes.name("/dots/rays", {"/dots/dot", "/frame"});
-  axes.name("/dots/rays_planned", {"/dots/dot"});
   axes.name("/dots/by_table", {"/dots/dot"});
-  axes.name("/rays/status", {"/frame", "/rays/kind"});
   write_field_map(file, field, axes);
   axes.attach();
-
-  Setup const& setup = scene.setup;
-  file.attribute("/dots", "interpolation",
-                 setup.medium.interpolation == FieldInterpolation::cubic_bspline ? "cubic_bspline" : "trilinear");
-  file.attribute(
-      "/dots", "conventions",
-      "displacement = flow minus reference; column right and row down from 0 at the first pixel's centre; dots "
-      "appear displaced against grad n");
-  file.attribute("/", "method", to_string(rendering.plan.method));
+  write_source_attributes(file, dots_group(), scene, rendering.plan);
   if (table) {
     file.attribute("/dots", "table_truth_error_px", std::max(table->truth_px, table->truth_resolution_px));
     file.attribute("/dots", "table_image_error_levels", std::max(table->image_levels, table->image_resolution_levels));
   }
-  file.attribute("/dots", "step_mm", rendering.plan.step * 1e3);
-  file.attribute("/dots", "magnification", scene.imaging.magnification);
   file.close();
 }
-
-namespace {
-
-/// @throws DataError if a dataset's length does not match the others
-void require_length(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
-  if (there == needed) return;
-  throw DataError(ErrorCode::wrong_shape, path,
-                  dataset + " has " + std::to_string(there) + " values, but " + std::to_string(needed) +
-                      " are required; render the case again");
-}
-
-}  // namespace
 
 GroundTruth read_truth(std::string const& path) {
   Hdf5Reader const file(path);
@@ -153,28 +114,12 @@ GroundTruth read_truth(std::string const& path) {
   for (std::size_t i = 0; i < truth.size(); ++i) {
     truth.position_m[i] = {position[3 * i], position[3 * i + 1], position[3 * i + 2]};
   }
-  bool const with_errors = file.attribute("version") != "1";  // version 1 did not contain them
-  for (PairDataset const& dataset : pair_datasets) {
-    if (dataset.values == &GroundTruth::displacement_error_px && !with_errors) {
-      truth.displacement_error_px.assign(truth.size(), {not_a_number, not_a_number});
-      continue;
-    }
-    std::vector<double> const values = file.read(dataset.name);
-    require_length(path, dataset.name, values.size(), 2 * truth.size());
-    for (std::size_t i = 0; i < truth.size(); ++i) (truth.*dataset.values)[i] = {values[2 * i], values[2 * i + 1]};
-  }
-  std::vector<std::int64_t> const by_table =
-      with_errors ? file.read_integers("/dots/by_table") : std::vector<std::int64_t>(truth.size());
+  read_sources(file, path, dots_group(), truth);
+  std::vector<std::int64_t> const by_table =  // version 1 did not contain it
+      file.attribute("version") == "1" ? std::vector<std::int64_t>(truth.size()) : file.read_integers("/dots/by_table");
   require_length(path, "/dots/by_table", by_table.size(), truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
     truth.path[i] = by_table[i] == 1 ? TruthPath::table : TruthPath::rays;
-  }
-  std::vector<std::int64_t> const rays = file.read_integers("/dots/rays");
-  require_length(path, "/dots/rays", rays.size(), 2 * truth.size());
-  for (std::size_t i = 0; i < truth.size(); ++i) truth.rays[i] = {rays[2 * i], rays[2 * i + 1]};
-  if (file.has("/dots/rays_planned")) {
-    truth.rays_planned = file.read_integers("/dots/rays_planned");
-    require_length(path, "/dots/rays_planned", truth.rays_planned.size(), truth.size());
   }
   return truth;
 }

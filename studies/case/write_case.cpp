@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -120,10 +119,9 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   if (accuracy.table || prepared.plan.method != resolve_render_method(prepared.scene)) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.plan.method)));
   }
-  outcome.reference = grey_levels(frames.levels->reference());
-  outcome.flow = grey_levels(frames.levels->flow());
-  outcome.reference_sha256 = pixel_sha256(outcome.reference);
-  outcome.flow_sha256 = pixel_sha256(outcome.flow);
+  outcome.levels = {grey_levels(frames.levels->reference()), grey_levels(frames.levels->flow())};
+  outcome.reference_sha256 = pixel_sha256(outcome.levels.reference);
+  outcome.flow_sha256 = pixel_sha256(outcome.levels.flow);
   static_cast<RenderedOutcome&>(outcome) = warn_of_rendering(warnings, prepared, rendered, frames);
   // If dots at side faces are traced by rays, both errors are theirs, and one warning suffices
   bool const is_warned_of = outcome.side_faces && outcome.side_faces->truth_error_px > truth_tolerance_px;
@@ -141,8 +139,8 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
 
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
-  write_tiff(place(case_file::reference), outcome.reference, metadata);
-  write_tiff(place(case_file::flow), outcome.flow, metadata);
+  write_tiff(place(case_file::reference), outcome.levels.reference, metadata);
+  write_tiff(place(case_file::flow), outcome.levels.flow, metadata);
   FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, outcome.device};
   origin.sources.add_known("reference", outcome.reference_sha256);
   origin.sources.add_known("flow", outcome.flow_sha256);

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "analysis/vectors/three_components.h"
 #include "analysis/vectors/vector_file.h"

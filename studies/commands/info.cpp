@@ -91,8 +91,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     }
     bool const particles = arguments->kind == "particles";
     if (particles || arguments->kind == "setup") {
-      SetupDocument setup = read_setup_document(arguments->file);
-      for (std::string const& assignment : arguments->overrides) setup.override_key(assignment);
+      SetupDocument setup = read_setup_document(arguments->file, arguments->overrides);
       return print(options,
                    particles ? describe_particles(setup, arguments->file)
                              : describe_setup(setup, arguments->file, arguments->figure),

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/optics/field_analysis.h"
 #include "studies/case/json_text.h"

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "render/base/error.h"
 #include "render/base/units.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "render/base/version.h"
 #include "studies/commands/command_description.h"
 

@@ -11,7 +11,6 @@
 #include "render/files/output_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
-#include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"

@@ -94,8 +94,7 @@ nlohmann::ordered_json preview_json(CasePreview const& preview, std::string cons
 
 /// Implements --preview: renders a part of the images of every camera into a PNG.
 int render_previews(RenderArguments const& arguments, GlobalOptions const& options) {
-  SetupDocument document = read_setup_document(arguments.setup);
-  for (std::string const& assignment : arguments.overrides) document.override_key(assignment);
+  SetupDocument const document = read_setup_document(arguments.setup, arguments.overrides);
   std::filesystem::path const output = arguments.output.empty() ? "preview.png" : arguments.output;
   if (output.extension() != ".png") {
     throw OutputError(output.string(), "is not the name of a PNG, which --preview writes; use .png");
@@ -121,16 +120,9 @@ int render_previews(RenderArguments const& arguments, GlobalOptions const& optio
   return ok;
 }
 
-/// Returns true if the setup has a table [sequence] whose pairs are all to be rendered.
-bool is_whole_sequence(std::string const& setup, std::vector<std::string> const& overrides) {
-  SetupDocument document = read_setup_document(setup);
-  for (std::string const& assignment : overrides) document.override_key(assignment);
-  return describes_sequence(document);
-}
-
-void render_sequence(std::string const& setup, std::vector<std::string> const& overrides, std::string const& folder,
+void render_sequence(SetupDocument setup, std::string const& path, std::string const& folder,
                      GlobalOptions const& options) {
-  SequenceRenderer sequence(setup, overrides);
+  SequenceRenderer sequence(std::move(setup), path);
   sequence.refuse_over_inputs(folder);
   auto const renderer = options.open_device().renderer;
   RenderedSequence const rendered = sequence.render(*renderer, folder, !options.quiet);
@@ -174,11 +166,12 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
       ->trigger_on_parse(false);
   return [arguments, &options]() -> int {
     if (arguments->preview) return render_previews(*arguments, options);
-    if (is_whole_sequence(arguments->setup, arguments->overrides)) {
-      render_sequence(arguments->setup, arguments->overrides, arguments->output, options);
+    SetupDocument setup = read_setup_document(arguments->setup, arguments->overrides);
+    if (describes_sequence(setup)) {
+      render_sequence(std::move(setup), arguments->setup, arguments->output, options);
       return ok;
     }
-    SetupRenderer rendering(arguments->setup, arguments->overrides);
+    SetupRenderer rendering(std::move(setup), arguments->setup);
     rendering.refuse_over_inputs(arguments->output);
     auto const renderer = options.open_device().renderer;
     RenderedSetup const rendered = rendering.render(*renderer, arguments->output);

@@ -10,7 +10,6 @@
 
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
-#include "studies/sweep/case_list.h"
 
 namespace gladstone {
 namespace {

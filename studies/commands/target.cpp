@@ -70,8 +70,7 @@ CommandBody attach_target(CLI::App& app, GlobalOptions const& options) {
       ->expected(1)
       ->trigger_on_parse(false);
   return [arguments, &options] {
-    SetupDocument document = read_setup_document(arguments->setup);
-    for (std::string const& assignment : arguments->overrides) document.override_key(assignment);
+    SetupDocument const document = read_setup_document(arguments->setup, arguments->overrides);
     Description const written = write_target(document, arguments->setup, arguments->output);
     print_result(options, written.json, written.text);
     return ok;

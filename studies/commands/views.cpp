@@ -4,8 +4,6 @@
 #include <filesystem>
 
 #include "render/base/units.h"
-#include "render/files/output_file.h"
-#include "studies/case/case_files.h"
 #include "studies/case/plenoptic_views.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <stdexcept>
 
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "analysis/correlation/correlation_methods.h"
@@ -145,6 +144,7 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
   MeasuredVectors vectors = load_vectors(files.vectors, loaded, &dots, options);
   stop_point("comparing");
   Warnings given;  // warnings already logged
+  auto const setup = std::make_shared<CaseSetup const>(loaded.copy());
   std::string fingerprint = comparison_fingerprint(files.sources, options);
   Comparison comparison = comparison_of(vectors, loaded.setup);
   if (options.reuse && read_chain(folder, fingerprint, comparison)) {
@@ -162,6 +162,7 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
                                  device, options.truth_at);
   }
   name_sources(comparison, std::move(files));
+  comparison.setup = setup;
   comparison.fingerprint = std::move(fingerprint);
   comparison.warnings = comparison_warnings(comparison, loaded.setup);
   for (Warning const& warning : comparison.warnings) {

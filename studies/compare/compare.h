@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -49,7 +50,8 @@ struct Comparison {
   std::optional<DetectedConventions> detected;  ///< conventions detected in a foreign file
   bool complete = true;                         ///< false: the file's header declares another number of vectors
   bool foreign = false;
-  Warnings warnings;        ///< comparison_warnings() of the case
+  Warnings warnings;                       ///< comparison_warnings() of the case
+  std::shared_ptr<CaseSetup const> setup;  ///< setup of the case as it was read; null for vectors in memory
   SourceFiles sources;      ///< contents of the compared files; empty for vectors that were never stored in files
   std::string fingerprint;  ///< comparison_fingerprint() of a CASE
   bool verified = false;    ///< true if the vectors were measured on exactly the frames that the truth belongs to

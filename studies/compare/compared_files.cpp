@@ -63,12 +63,12 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
   files.setup = in_case(folder, case_file::setup);
   files.truth = made_file(folder, case_file::truth, "gladstone render SETUP.toml -o " + folder);
   files.vectors = vectors_path(folder, vectors);
-  bool const hdf5 = files.vectors.ends_with(".h5") || files.vectors.ends_with(".hdf5");
+  bool const hdf5 = has_hdf5_ending(files.vectors);
   SourceFiles& sources = files.sources;
   sources.on_change("compare again, after gladstone correlate " + folder + " if the case was rendered again");
   sources.add("", files.setup, SourceFiles::Holds::bytes);
   sources.add("truth", files.truth, SourceFiles::Holds::datasets);
-  sources.add("vectors", files.vectors, hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
+  sources.add("vectors", files.vectors);
   add_inputs(sources, files.truth, folder);
   if (!hdf5) files.unverified = files.vectors;
   if (!hdf5) return files;

@@ -169,7 +169,7 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
                              CompareOptions const& options) {
   VectorFile file = read_vectors(path);
   log_remarks(file);
-  bool const foreign = file.foreign, hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
+  bool const foreign = file.foreign, hdf5 = has_hdf5_ending(path);
   bool const certain = !foreign && hdf5;  // our .h5 files name their frames
   MeasuredVectors vectors = accept_vectors(std::move(file), path, loaded, truth, options,
                                            certain ? ConventionCheck::none : ConventionCheck::require);

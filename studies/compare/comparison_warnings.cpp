@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "analysis/errors/error_summary.h"
 #include "studies/case/peak_locking.h"
 #include "studies/compare/comparison_kind.h"

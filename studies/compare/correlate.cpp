@@ -66,18 +66,6 @@ CorrelationSettings with_dots_of_case(CorrelationSettings const& settings, Setup
   return with_known_dots(settings, setup, read_truth(truth).reference_px);
 }
 
-/// Non-owning pair of frames.
-class FramesView final : public FramePair {
- public:
-  FramesView(Image<double> const& reference, Image<double> const& flow) : reference_(reference), flow_(flow) {}
-  Image<double> const& reference() const override { return reference_; }
-  Image<double> const& flow() const override { return flow_; }
-
- private:
-  Image<double> const& reference_;
-  Image<double> const& flow_;
-};
-
 /// Warns of conversions applied to an image on reading.
 void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
   if (metadata.channels >= 3) {
@@ -95,7 +83,7 @@ void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
 
 /// Applies masks and preprocessing steps to a pair. The frames before and after it are prepared as in the pairs that
 /// they form with it.
-std::unique_ptr<FramePair> prepare_pair(FramePair const& frames, FramePreparation const& preparation) {
+std::unique_ptr<StoredFrames> prepare_pair(StoredFrames const& frames, FramePreparation const& preparation) {
   HostFrames pair = prepare_frames(frames, preparation);
   auto const* const tracks = dynamic_cast<tracking::TrackFrames const*>(&frames);
   if (!tracks) return std::make_unique<HostFrames>(std::move(pair));
@@ -107,9 +95,9 @@ std::unique_ptr<FramePair> prepare_pair(FramePair const& frames, FramePreparatio
 }
 
 /// Applies masks and preprocessing steps to the frames and correlates the result.
-Measurement correlate_prepared(FramePair const& frames, CorrelationSettings settings, Backend const& device) {
+Measurement correlate_prepared(StoredFrames const& frames, CorrelationSettings settings, Backend const& device) {
   auto const start = std::chrono::steady_clock::now();
-  std::unique_ptr<FramePair> const prepared = prepare_pair(frames, settings.preparation);
+  std::unique_ptr<StoredFrames> const prepared = prepare_pair(frames, settings.preparation);
   settings.preparation = {};
   Measurement measurement = correlate_frames(*prepared, settings, device);
   if (valid_pixel_fraction(*prepared) == 0.0)
@@ -157,7 +145,7 @@ void check_finite(NamedFrame const& frame, std::size_t not_finite) {
 }
 
 /// Correlates frames of suitable sizes, and estimates the uncertainty of the vectors.
-Measurement correlate_checked(FramePair const& frames, CorrelationSettings const& settings, Backend const& device) {
+Measurement correlate_checked(StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device) {
   stop_point("correlating");
   bool const on_cpu = device.correlates_on(settings) == "cpu";
   Measurement measurement = correlate_frames(frames, choose_uncertainty(settings, on_cpu), device);
@@ -168,14 +156,14 @@ Measurement correlate_checked(FramePair const& frames, CorrelationSettings const
 
 }  // namespace
 
-Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
-                             std::string const& flow_name, Image<double> const& flow,
+Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name, HostFrames const& frames,
                              CorrelationSettings const& settings, Backend const& device) {
+  Image<double> const &reference = frames.reference(), &flow = frames.flow();
   NamedFrame const a{reference_name, reference.columns(), reference.rows()}, b{flow_name, flow.columns(), flow.rows()};
   check_sizes(a, b, settings);
   check_finite(a, count_not_finite(reference));
   check_finite(b, count_not_finite(flow));
-  return correlate_checked(FramesView(reference, flow), settings, device);
+  return correlate_checked(frames, settings, device);
 }
 
 Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples const& reference,
@@ -189,7 +177,7 @@ Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples
   return correlate_checked(*copied.frames, settings, device);
 }
 
-Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Backend const& device) {
+Measurement correlate_frames(StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device) {
   if (!settings.preparation.empty()) return correlate_prepared(frames, settings, device);
   auto const start = std::chrono::steady_clock::now();
   std::unique_ptr<Correlator> const correlator = device.correlator(settings);
@@ -309,11 +297,11 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
   sources.add("", setup, SourceFiles::Holds::bytes);
   CaseSetup loaded = load_case_setup(setup, {});
   CorrelationSettings const& settings = other ? other->settings : loaded.correlate;
-  Image<double> const reference_frame = read_frame(reference, "reference", sources);
-  Image<double> const flow_frame = read_frame(flow, "flow", sources);
+  Image<double> reference_frame = read_frame(reference, "reference", sources);
+  HostFrames const frames(std::move(reference_frame), read_frame(flow, "flow", sources));
   add_preparation(settings, sources);
-  Measurement measurement = correlate_frames(reference, reference_frame, flow, flow_frame,
-                                             with_dots_of_case(settings, loaded.setup, folder, sources), device);
+  Measurement measurement =
+      correlate_frames(reference, flow, frames, with_dots_of_case(settings, loaded.setup, folder, sources), device);
   warn_of_exchanged_frames(measurement.field, sources);
   FileOrigin origin{
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,

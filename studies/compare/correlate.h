@@ -22,8 +22,7 @@ struct Measurement {
 
 /// Correlates two images, and estimates the uncertainty of the vectors by the method of choose_uncertainty().
 /// @throws DataError if they differ in size or are smaller than an interrogation window
-Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
-                             std::string const& flow_name, Image<double> const& flow,
+Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name, HostFrames const& frames,
                              CorrelationSettings const& settings, Backend const& device);
 /// Like correlate_frames(), for images that another library stores in the memory of the first GPU; they are not copied
 /// to the host unless the settings require the CPU.
@@ -32,7 +31,7 @@ Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples
                                  CorrelationSettings const& settings, Backend const& device);
 /// Correlates two frames that may be stored on a device; estimates no uncertainty if its method is "auto".
 /// @pre the frames are at least as large as the largest interrogation window
-Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Backend const& device);
+Measurement correlate_frames(StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device);
 
 /// Settings of a [correlate] table.
 struct CorrelationFile {

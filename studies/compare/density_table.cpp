@@ -126,7 +126,7 @@ void require_density_ending(std::string const& path) {
 }
 
 bool is_density_file(std::string const& path) {
-  if (!path.ends_with(".h5") && !path.ends_with(".hdf5")) return false;
+  if (!has_hdf5_ending(path)) return false;
   std::string const type = Hdf5Reader(path).attribute("filetype");
   return type == "gladstone density" || type == "gladstone tomography" || type == "gladstone volume";
 }

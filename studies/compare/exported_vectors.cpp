@@ -51,12 +51,10 @@ DisplacementField vectors_of_map(Image<Vec2d> const& map, int spacing_px) {
   return field;
 }
 
-bool is_hdf5_name(std::string const& path) { return path.ends_with(".h5") || path.ends_with(".hdf5"); }
-
 }  // namespace
 
 bool is_truth_file(std::string const& path) {
-  return is_hdf5_name(path) && Hdf5Reader(path).attribute("filetype") == "gladstone truth";
+  return has_hdf5_ending(path) && Hdf5Reader(path).attribute("filetype") == "gladstone truth";
 }
 
 ExportedVectors compute_map_for_export(std::string const& path, Renderer& renderer, TruthAt at, int spacing_px,
@@ -85,9 +83,8 @@ ExportedComponents load_components_for_export(std::string const& path) {
 ExportedVectors load_for_export(std::string const& path, std::string const& conventions, int image_rows) {
   ExportedVectors vectors;
   vectors.origin.filetype = "gladstone vectors";
-  bool const hdf5 = is_hdf5_name(path);
-  vectors.origin.sources.add("", path, hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
-  if (hdf5) {
+  vectors.origin.sources.add("", path);
+  if (has_hdf5_ending(path)) {
     Hdf5Reader const file(path);
     copy_provenance(file, vectors.origin);
     if (file.attribute("filetype") == "gladstone truth") {
@@ -110,9 +107,7 @@ ExportedVectors load_for_export(std::string const& path, std::string const& conv
   vectors.complete = file.complete;
   vectors.conventions = describe(file.conventions);
   vectors.field = apply_conventions(std::move(file.field), file.conventions, image_rows);
-  if (hdf5 && !file.foreign) {
-    vectors.field.warnings = read_warnings(Hdf5Reader(path));
-  }
+  if (has_hdf5_ending(path) && !file.foreign) vectors.field.warnings = read_warnings(Hdf5Reader(path));
   return vectors;
 }
 

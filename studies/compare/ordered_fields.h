@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <mutex>
-#include <optional>
 
 #include "analysis/vectors/displacement_field.h"
 

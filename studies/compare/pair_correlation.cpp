@@ -31,7 +31,9 @@ class SharedCorrelator final : public Correlator {
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
     return shared_->correlate(reference, flow);
   }
-  DisplacementField correlate_pair(FramePair const& frames) const override { return shared_->correlate_pair(frames); }
+  DisplacementField correlate_pair(StoredFrames const& frames) const override {
+    return shared_->correlate_pair(frames);
+  }
 
  private:
   std::shared_ptr<Correlator const> shared_;

@@ -50,9 +50,8 @@ ReconstructedFiles find_measured_files(std::string const& place, std::string con
                                       "another file with --vectors"
                                     : "does not exist; check --vectors");
   require_input_file(files.vectors, "a file of vectors");
-  bool const is_hdf5 = files.vectors.ends_with(".h5") || files.vectors.ends_with(".hdf5");
   files.sources.add("", files.setup, SourceFiles::Holds::bytes);
-  files.sources.add("vectors", files.vectors, is_hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
+  files.sources.add("vectors", files.vectors);
   return files;
 }
 
@@ -84,9 +83,9 @@ std::vector<double> compute_truth(Reconstruction const& result, DisplacementFiel
 }  // namespace
 
 Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device,
-                                Comparison const* known) {
+                                KnownMeasurement known) {
   ReconstructedFiles files = find_files(place, options.vectors);
-  CaseSetup loaded = load_case_setup(files.setup, {});
+  CaseSetup const loaded = known.setup ? known.setup->copy() : load_case_setup(files.setup, {});
   require_experiment(loaded.setup, bos_experiment, files.setup,
                      "is not a BOS setup (density follows from the displacement of a background); use a setup with "
                      "experiment = \"bos\"");
@@ -106,8 +105,8 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
     comparing.vectors = options.vectors;
     comparing.reuse = true;
     std::optional<Comparison> computed;
-    if (!known) known = &computed.emplace(compare_case(place, device, comparing));
-    result.budget = compute_density_budget(*known, result, loaded.setup, window_px, options);
+    if (!known.comparison) known.comparison = &computed.emplace(compare_case(place, device, comparing));
+    result.budget = compute_density_budget(*known.comparison, result, loaded.setup, window_px, options);
   } else if (options.budget) {
     throw DataError(ErrorCode::missing_file, place,
                     "has no truth.h5, without which the causes of the error are unknown; remove --budget, or "

@@ -14,7 +14,6 @@
 #include "analysis/vectors/sequence_statistics.h"
 #include "analysis/vectors/track_vectors.h"
 #include "render/base/error.h"
-#include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/version.h"
 #include "render/files/hdf5_file.h"

@@ -23,11 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void add_stereo_source(SourceFiles& sources, std::string const& name, std::string const& path) {
-  bool const is_hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
-  sources.add(name, path, is_hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
-}
-
 /// Reads the setup that a calibration stores, for the size of the images and the defaults of [correlate].
 CaseSetup load_calibrated_setup(std::string const& calibration) {
   std::string const text = Hdf5Reader(calibration).attribute("setup");
@@ -87,7 +82,7 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
   if (!options.calibrations.empty()) {
     input.calibration = options.calibrations[index];
     require_input_file(input.calibration, "a calibration");
-    add_stereo_source(sources, "calibration" + suffix, input.calibration);
+    sources.add("calibration" + suffix, input.calibration);
     input.camera = read_calibrated_camera(input.calibration);
   }
   std::error_code error;
@@ -98,7 +93,7 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
     input.path = in_case(place, case_file::vectors);
     if (fs::exists(fs::path(place) / case_file::truth, error)) {
       truth = options.dewarp_images ? in_case(place, case_file::truth) : compared_files(place, "").truth;
-      add_stereo_source(sources, "truth" + suffix, truth);
+      sources.add("truth" + suffix, truth);
     } else if (!options.dewarp_images && !fs::exists(input.path, error)) {
       throw DataError(ErrorCode::missing_file, input.path,
                       "does not exist; create it with: gladstone correlate " + place);
@@ -134,7 +129,7 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
     input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
     return input;
   }
-  add_stereo_source(sources, "vectors" + suffix, input.path);
+  sources.add("vectors" + suffix, input.path);
   CompareOptions reading;
   reading.conventions = options.conventions;
   input.vectors = load_vectors(input.path, *input.loaded, input.truth ? &*input.truth : nullptr, reading);

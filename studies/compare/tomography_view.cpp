@@ -220,8 +220,7 @@ TomographyView read_tomography_view(TomographyOptions const& options, std::size_
   ViewFiles const files = find_view_files(options, index);
   std::string const prefix = fmt::format("view_{:02}_", index);
   sources.add(prefix + "setup", files.setup, SourceFiles::Holds::bytes);
-  bool const is_hdf5 = files.vectors.ends_with(".h5") || files.vectors.ends_with(".hdf5");
-  sources.add(prefix + "vectors", files.vectors, is_hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
+  sources.add(prefix + "vectors", files.vectors);
 
   TomographyView view{load_case_setup(files.setup, {})};
   Setup const& setup = view.loaded.setup;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "analysis/tomography/projected_density.h"
 #include "studies/case/case.h"
 #include "studies/compare/tomography.h"

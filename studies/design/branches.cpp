@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "render/base/error.h"
-#include "studies/case/light_exposure.h"
 #include "studies/case/uncertain_inputs.h"
 #include "studies/design/sheet.h"
 

@@ -97,8 +97,7 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
 }  // namespace
 
 DesignReport design(DesignRequest const& request) {
-  SetupDocument document = read_setup_document(request.setup);
-  for (std::string const& assignment : request.overrides) document.override_key(assignment);
+  SetupDocument document = read_setup_document(request.setup, request.overrides);
   return design(std::move(document), request);
 }
 

@@ -1,7 +1,6 @@
 #include "studies/design/sheet.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "render/base/contracts.h"

@@ -10,6 +10,7 @@
 
 #include "analysis/errors/error_summary.h"
 #include "render/files/image_file.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/case_files.h"
 #include "studies/case/render_setup.h"
 #include "studies/case/shared_folder.h"
@@ -74,7 +75,8 @@ std::string run_gallery(std::string const& folder, Backend const& device) {
   for (GalleryPicture const& picture : all) {
     spdlog::info("{}: {}", picture.name, picture.title);
     std::string const place = (fs::path(folder) / picture.name).string();
-    SetupRenderer setup((fs::path(cases) / (std::string(picture.name) + ".toml")).string(), {});
+    std::string const path = (fs::path(cases) / (std::string(picture.name) + ".toml")).string();
+    SetupRenderer setup(read_setup_document(path), path);
     setup.refuse_over_inputs(place);
     setup.render(*device.renderer, place);
     images.push_back(read_image(in_case(place, case_file::reference)));

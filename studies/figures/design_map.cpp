@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "render/base/units.h"
 #include "studies/drawing/figure_texts.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"

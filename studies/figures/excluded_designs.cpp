@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 
 #include "studies/design/bounds.h"
 #include "studies/figures/design_map.h"

@@ -209,24 +209,8 @@ Figure make_camera_layout_figure(Setup const& setup) {
                          fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
-OpticalLayout piv_layout(Setup const& setup) {
-  ImagingGeometry const imaging = setup.imaging();
-  double const half = setup.camera.rows / 2.0 * setup.camera.pixel_pitch, seen = half / imaging.magnification;
-  return {0,
-          setup.z_a,
-          setup.z_a + imaging.image_distance,
-          setup.medium.thickness / 2,
-          imaging.entrance_pupil / 2,
-          half,
-          seen,
-          seen,
-          0,
-          setup.piv->laser.thickness / 2,
-          setup.piv->laser.height / 2};
-}
-
 Figure make_piv_layout_figure(Setup const& setup) {
-  OpticalLayout const l = piv_layout(setup);
+  OpticalLayout const l = make_camera_layout(setup);
   LaserSetup const& laser = setup.piv->laser;
   return make_layout(l, {fmt::format("Layout: f/{:.4g}, M = {:.4g}, sheet {:.4g} mm thick", setup.lens.f_number,
                                      setup.imaging().magnification, laser.thickness / mm),

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "render/scene/setup.h"
@@ -39,11 +38,8 @@ OpticalLayout make_camera_layout(Setup const& setup);
 /// @throws DataError if the image distance or the view is infinite
 Figure make_camera_layout_figure(Setup const& setup);
 
-/// Returns the geometry of a PIV setup, with the laser sheet in the plane Z = 0.
+/// Draws the layout of make_camera_layout() for a PIV setup, with the laser sheet in the plane Z = 0.
 /// @pre setup.piv
-OpticalLayout piv_layout(Setup const& setup);
-
-/// Geometry of a PIV setup with the laser sheet and a particle on the axis.
 Figure make_piv_layout_figure(Setup const& setup);
 
 }  // namespace gladstone

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <complex>
-#include <string>
 #include <vector>
 
 #include "render/light/mie.h"

@@ -138,7 +138,7 @@ std::optional<Reconstruction> reconstruct_compared(ReportOptions const& options,
   density.vectors = options.vectors;
   if (!options.conventions.empty()) density.conventions = options.conventions;
   density.budget = true;
-  return reconstruct_case(options.source, density, device, &compared);
+  return reconstruct_case(options.source, density, device, {compared.setup.get(), &compared});
 }
 
 /// Adds the errors, their causes and the estimated uncertainty.
@@ -226,7 +226,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   if (mistaken || !all.complete) {
     page.doubtful.push_back(options.vectors.empty() ? in_case(options.source, case_file::vectors) : options.vectors);
   }
-  std::optional<LayoutView> const bench = layout_view(load_case_setup(in_case(options.source, case_file::setup), {}));
+  std::optional<LayoutView> const bench = layout_view(all.setup->copy());
   if (bench) page.sections.push_back(layout_section(*bench, "the case"));
   page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
   if (!view.maps.empty())

@@ -24,8 +24,6 @@ namespace fs = std::filesystem;
 constexpr std::array<std::pair<char const*, char const*>, 2> frame_files{
     {{"reference", case_file::reference}, {"flow", case_file::flow}}};
 
-bool is_hdf5(std::string const& path) { return path.ends_with(".h5") || path.ends_with(".hdf5"); }
-
 std::string pixels_of(CameraSetup const& camera) { return fmt::format("{} x {} px", camera.columns, camera.rows); }
 
 /// Rejects vectors that lie or point outside the image.
@@ -99,11 +97,9 @@ MeasuredFiles measured_files(ReportOptions const& options) {
   for (auto const& [name, file] : frame_files) {
     if (files.frames) files.sources.add(name, (fs::path(options.source) / file).string(), SourceFiles::Holds::pixels);
   }
-  auto const add = [&files](std::string const& name, std::string const& path) {
-    files.sources.add(name, path, is_hdf5(path) ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
-  };
-  add("vectors", files.vectors);
-  for (std::size_t i = 0; i < files.repeats.size(); ++i) add(fmt::format("repeat {}", i + 2), files.repeats[i]);
+  files.sources.add("vectors", files.vectors);
+  for (std::size_t i = 0; i < files.repeats.size(); ++i)
+    files.sources.add(fmt::format("repeat {}", i + 2), files.repeats[i]);
   return files;
 }
 
@@ -119,8 +115,9 @@ void check_frames_match_camera(MeasuredFiles const& files, ReportOptions const& 
                       "or use frames of this camera",
                       frame.columns(), frame.rows(), files.setup, pixels_of(camera), frame.columns(), frame.rows()));
     }
-    std::string const told =
-        is_hdf5(files.vectors) ? Hdf5Reader(files.vectors).attribute(std::string(name) + "_sha256") : std::string();
+    std::string const told = has_hdf5_ending(files.vectors)
+                                 ? Hdf5Reader(files.vectors).attribute(std::string(name) + "_sha256")
+                                 : std::string();
     if (told.empty() || told == files.sources.sha256(name)) continue;
     throw DataError(
         ErrorCode::changed, files.vectors,

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "analysis/errors/error_summary.h"
 #include "render/files/text_file.h"
@@ -109,7 +107,7 @@ std::optional<Reconstruction> reconstruct_measured(ReportOptions const& options,
   ReconstructOptions density = *options.density;
   density.vectors = options.vectors;
   if (!options.conventions.empty()) density.conventions = options.conventions;
-  if (mean.count == 1) return reconstruct_case(options.source, density, device);
+  if (mean.count == 1) return reconstruct_case(options.source, density, device, {.setup = &loaded});
   Reconstruction result = reconstruct_density(mean.field, loaded.setup, loaded.correlate.window_px.back(), density);
   log_warnings(result.warnings);
   return result;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "analysis/errors/error_summary.h"
 #include "render/base/error.h"
 #include "render/files/source_files.h"
 #include "render/files/text_file.h"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "render/setup/setup_node.h"
 
 namespace gladstone {

@@ -4,12 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <new>
 #include <nlohmann/json.hpp>
-#include <span>
-#include <string_view>
 
 #include "analysis/vectors/vector_file.h"
 #include "render/base/contracts.h"

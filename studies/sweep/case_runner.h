@@ -3,10 +3,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "studies/compare/compare.h"
 #include "studies/sweep/results.h"

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"

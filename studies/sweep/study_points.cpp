@@ -1,6 +1,5 @@
 #include "studies/sweep/study_points.h"
 
-#include <algorithm>
 #include <array>
 
 #include "render/base/contracts.h"

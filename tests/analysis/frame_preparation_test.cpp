@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <random>
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/preparation/frame_changes.h"
@@ -193,7 +192,7 @@ TEST(Background, SubtractsStationaryBackground) {
   }
   CorrelationSettings settings;
   settings.window_px = {32};
-  auto const median_u = [&](FramePair const& frames) {
+  auto const median_u = [&](StoredFrames const& frames) {
     DisplacementField const field = make_correlator(settings)->correlate_pair(frames);
     std::vector<double> u;
     for (Vec2d const& d : field.displacement_px) u.push_back(d.x);

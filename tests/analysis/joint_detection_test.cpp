@@ -8,8 +8,6 @@
 #include <random>
 #include <vector>
 
-#include "render/base/units.h"
-
 namespace gladstone {
 namespace {
 

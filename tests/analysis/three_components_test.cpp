@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <cmath>
@@ -14,9 +13,9 @@
 #include <span>
 
 #include "analysis/vectors/vector_readers/text_table.h"
-#include "render/base/error.h"
 #include "render/files/fields/field_file.h"
 #include "tests/support/documented_tables.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone::three_components_test {
 namespace {
@@ -25,17 +24,9 @@ using testing::ElementsAre;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-class ThreeComponents : public testing::Test {
+class ThreeComponents : public FolderFixture {
  protected:
-  ThreeComponents() {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("gladstone_three_components_test_" + std::to_string(::getpid()) +
-                                                  "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~ThreeComponents() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(std::string const& name) const { return (folder_ / name).string(); }
+  std::string path(std::string const& name) const { return in_folder(name); }
   std::string write(std::string const& name, ThreeComponentField const& components = field()) const {
     FileOrigin origin;
     origin.filetype = "gladstone three components";
@@ -102,9 +93,6 @@ class ThreeComponents : public testing::Test {
       }
     }
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 TEST_F(ThreeComponents, TablesComeBack) {

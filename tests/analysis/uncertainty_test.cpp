@@ -10,21 +10,12 @@
 #include "analysis/errors/uncertainty_quality.h"
 #include "analysis/uncertainty/particle_pairs.h"
 #include "analysis/uncertainty/pass_amplification.h"
-#include "render/base/error.h"
 #include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
 
-class TestFrames final : public FramePair {
- public:
-  explicit TestFrames(ParticlePair const& pair) : pair_(pair) {}
-  Image<double> const& reference() const override { return pair_.reference; }
-  Image<double> const& flow() const override { return pair_.flow; }
-
- private:
-  ParticlePair const& pair_;
-};
+HostFrames frames_of(ParticlePair const& pair) { return {pair.reference, pair.flow}; }
 
 UncertaintyQuality quality_of(std::string const& method, std::function<Vec2d(Vec2d)> const& truth, double noise,
                               std::uint64_t seed) {
@@ -32,7 +23,7 @@ UncertaintyQuality quality_of(std::string const& method, std::function<Vec2d(Vec
   CorrelationSettings settings;
   settings.uncertainty = method;
   DisplacementField field = make_correlator(settings)->correlate(pair.reference, pair.flow);
-  estimate_uncertainty(field, TestFrames(pair), settings);
+  estimate_uncertainty(field, frames_of(pair), settings);
   std::vector<Vec2d> right;
   for (Vec2d const& p : field.position_px) right.push_back(truth(p));
   return uncertainty_quality(field.displacement_px, right, field.sigma_px, {});
@@ -149,7 +140,7 @@ TEST(Uncertainty, IsTheSameInFramesOfOtherBrightness) {
     settings.uncertainty = method;
     auto const mean_square = [&](ParticlePair const& pair) {
       DisplacementField field = make_correlator(settings)->correlate(pair.reference, pair.flow);
-      estimate_uncertainty(field, TestFrames(pair), settings);
+      estimate_uncertainty(field, frames_of(pair), settings);
       double sum = 0.0;
       for (Vec2d const& sigma : field.sigma_px) sum += std::isfinite(sigma.x) ? dot(sigma, sigma) : 0.0;
       return sum;
@@ -243,7 +234,7 @@ UncertaintyQuality quality_of_dots(std::string const& method, double diameter_px
     CorrelationSettings settings;
     settings.uncertainty = method;
     DisplacementField field = make_correlator(settings)->correlate(pair.reference, pair.flow);
-    estimate_uncertainty(field, TestFrames(pair), settings);
+    estimate_uncertainty(field, frames_of(pair), settings);
     for (std::size_t i = 0; i < field.size(); ++i) {
       Vec2d const at = field.position_px[i];
       if (field.status[i] != VectorStatus::valid || std::min(at.x, at.y) < 32 || std::max(at.x, at.y) > 351) continue;
@@ -326,7 +317,7 @@ TEST(EveryUncertainty, IsNotKnownWhereNothingWasMeasured) {
     CorrelationSettings settings;
     settings.uncertainty = method;
     DisplacementField field = make_correlator(settings)->correlate(pair.reference, pair.flow);
-    estimate_uncertainty(field, TestFrames(pair), settings);
+    estimate_uncertainty(field, frames_of(pair), settings);
     std::size_t known = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
       bool const has_sigma = std::isfinite(field.sigma_px[i].x) && std::isfinite(field.sigma_px[i].y);

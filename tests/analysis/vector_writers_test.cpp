@@ -2,7 +2,6 @@
 // prescribes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <cmath>
@@ -22,6 +21,7 @@
 #include "tests/support/documented_tables.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone::vector_writers_test {
 namespace {
@@ -32,31 +32,20 @@ using testing::StartsWith;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-class VectorWriters : public testing::Test {
+class VectorWriters : public FolderFixture {
  protected:
-  VectorWriters() {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("gladstone_vector_writers_test_" + std::to_string(::getpid()) + "_" +
-                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~VectorWriters() override { std::filesystem::remove_all(folder_); }
-
   std::string write(std::string const& name, DisplacementField const& field) const {
     FileOrigin origin;
     origin.filetype = "gladstone vectors";
-    std::string const path = (folder_ / name).string();
+    std::string const path = in_folder(name);
     write_vectors(path, field, origin);
     return path;
   }
-  std::string place(std::string const& name) const { return (folder_ / name).string(); }
+  std::string place(std::string const& name) const { return in_folder(name); }
   static std::string content(std::string const& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 /// A grid of 2 rows and 3 columns whose numbers name their place: u = 10 row + column, v = -u.

@@ -1,7 +1,6 @@
 #include "render/ideal_images/ideal_images.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 

@@ -1,13 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
 #include "render/optics/prescription.h"
 #include "render/rays/ray_planning.h"
-#include "render/scene/build_camera.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
 #include "tests/cuda/memory_limits.h"
 #include "tests/optics/prescription_texts.h"

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "render/files/source_files.h"
 #include "tests/end_to_end/support/program_fixture.h"
 

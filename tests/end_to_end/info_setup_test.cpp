@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cmath>
 
 #include "tests/end_to_end/support/program_fixture.h"

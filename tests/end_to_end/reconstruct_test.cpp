@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "tests/end_to_end/support/program_fixture.h"
 

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {

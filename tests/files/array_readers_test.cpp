@@ -18,6 +18,7 @@
 #include "tests/support/documented_tables.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone::array_readers_test {
 namespace {
@@ -26,20 +27,8 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class ArrayReaders : public testing::Test {
+class ArrayReaders : public FolderFixture {
  protected:
-  void SetUp() override {
-    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("array_") + info->test_suite_name() + info->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string write(std::string const& name, std::string const& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-    return (folder_ / name).string();
-  }
   static std::vector<double> values_of(std::string const& path, std::string const& dataset = "", int values = 1) {
     auto const source = open_field(path, dataset, values);
     std::vector<double> read(source->grid().size() * static_cast<std::size_t>(values));
@@ -55,9 +44,6 @@ class ArrayReaders : public testing::Test {
     }
     return "no error";
   }
-
- private:
-  fs::path folder_;
 };
 
 /// Returns 100 z + 10 y + x at each node of 4 x 3 x 2 nodes, x fastest.

@@ -20,6 +20,7 @@
 #include "render/files/hdf5_file.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
@@ -28,20 +29,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-/// Fixture with a separate directory for each test.
-class FieldFiles : public testing::Test {
- protected:
-  void SetUp() override {
-    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("field_") + info->test_suite_name() + info->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string in_folder(std::string const& name) const { return (folder_ / name).string(); }
-  fs::path folder_;
-};
+using FieldFiles = FolderFixture;
 
 std::vector<double> read_all(FieldSource& source) {
   std::vector<double> values(source.grid().size());
@@ -74,7 +62,7 @@ std::string bytes(std::vector<double> const& values, bool big_endian = false) {
   return text;
 }
 
-class JhtdbField : public FieldFiles {
+class JhtdbField : public FolderFixture {
  protected:
   using Shape = std::vector<std::size_t>;
 
@@ -578,7 +566,7 @@ TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
   EXPECT_THAT([&] { open_field(folder_.string(), ""); }, ThrowsDataError(ErrorCode::unreadable_file, ""));
 }
 
-class NrrdField : public FieldFiles {
+class NrrdField : public FolderFixture {
  protected:
   static std::string header(std::string const& fields) { return "NRRD0005\n# a comment\nnote:=ignored\n" + fields; }
 
@@ -954,7 +942,7 @@ TEST(VtiField, IsReadInEachOfVtksWays) {
   }
 }
 
-class VtiFiles : public FieldFiles {
+class VtiFiles : public FolderFixture {
  protected:
   /// Writes a file with the given text and reads it.
   void read(std::string const& text, std::string const& dataset = "", int values = 1) {

@@ -16,6 +16,7 @@
 
 #include "render/base/error.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
@@ -24,18 +25,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class Hdf5 : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("hdf5_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string in_folder(std::string const& name) const { return (folder_ / name).string(); }
-  fs::path folder_;
-};
+using Hdf5 = FolderFixture;
 
 FileOrigin origin() { return {"gladstone test", 3, "schema = 1\n", 18446744073709551615u, "cpu"}; }
 

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <string>
 
-#include "render/base/error.h"
 #include "render/files/image_file.h"
 #include "tests/support/expect_error.h"
 

@@ -14,6 +14,7 @@
 #include "render/base/error.h"
 #include "render/files/text_file.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
@@ -21,21 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class InputFiles : public testing::Test {
+class InputFiles : public FolderFixture {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "gladstone_input_files";
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string in(std::string const& name) const { return (folder_ / name).string(); }
-  std::string write(std::string const& name, std::string const& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return in(name);
-  }
-
-  fs::path folder_;
+  std::string in(std::string const& name) const { return in_folder(name); }
 };
 
 // Opening a pipe without a writer blocks for ever, and a device has no end.

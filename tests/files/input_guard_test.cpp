@@ -7,10 +7,8 @@
 #include <fstream>
 #include <thread>
 
-#include "render/base/error.h"
 #include "render/files/file_kind.h"
 #include "render/files/hdf5_file.h"
-#include "render/files/input_file.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
 #include "render/files/text_file.h"

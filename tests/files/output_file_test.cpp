@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "render/base/error.h"
 #include "render/files/output_folder.h"
 #include "tests/files/support/output.h"
 #include "tests/support/expect_error.h"

@@ -13,7 +13,6 @@
 
 #include <cerrno>
 
-#include "render/base/error.h"
 #include "tests/files/support/output.h"
 #include "tests/support/expect_error.h"
 

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <chrono>
-#include <functional>
 
 #include "render/base/error.h"
 #include "tests/files/support/output.h"

@@ -2,12 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
-#include "render/base/units.h"
 #include "render/focused_dots/owned_dot_model.h"
 #include "tests/focused_dots/picture_error.h"
 #include "tests/scene/small_scenes.h"

@@ -155,7 +155,7 @@ TEST(FocusedDotsRenderer, TheLightOfADotIsTheSameAloneAndAmongOthers) {
   std::size_t const dot = 20 * 9 + 11;
   alone.dots.centre = {many.dots.centre[dot]};
   others.dots.centre.erase(others.dots.centre.begin() + static_cast<std::ptrdiff_t>(dot));
-  LightPair const all = render_all(many).light, one = render_all(alone).light, rest = render_all(others).light;
+  FramePair<double> const all = render_all(many).light, one = render_all(alone).light, rest = render_all(others).light;
   for (std::size_t i = 0; i < all.flow.size(); ++i) {
     // multiples of 1/2^n, which doubles represent without rounding
     ASSERT_EQ(all.flow.data()[i], one.flow.data()[i] + rest.flow.data()[i]);

@@ -101,7 +101,7 @@ TEST(IdealImages, EqualThoseOfRaysInFocus) {
   Detector const detector(scene.setup.camera, Detector::auto_exposure(scene.setup.camera, brightest));
   double const levels = detector.pixel().electrons * detector.pixel().levels_per_electron;
   double worst = 0;
-  for (auto const frame : {&LightPair::reference, &LightPair::flow}) {
+  for (auto const frame : {&FramePair<double>::reference, &FramePair<double>::flow}) {
     Image<double> const &a = formula.light.*frame, &b = rays.light.*frame;
     for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, levels * std::abs(a.data()[i] - b.data()[i]));
   }

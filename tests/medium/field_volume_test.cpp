@@ -12,6 +12,7 @@
 #include "render/files/hdf5_file.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
@@ -19,16 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Fixture: each test writes small field files into its own directory.
-class FieldVolume : public testing::Test {
+class FieldVolume : public FolderFixture {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("field_volume_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// Writes a file in the style of JHTDB with values f(i, j, k), and with coordinates of the given step if it is
   /// positive.
   template <class Function>
@@ -66,8 +59,6 @@ class FieldVolume : public testing::Test {
   static Bounds<double> bounds(BuiltMedium const& built) {
     return std::visit([](auto const& medium) { return medium.bounds(); }, built.view);
   }
-
-  fs::path folder_;
 };
 
 double ramp(int i, int j, int k) { return 1 + i + 10 * j + 100 * k; }

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "render/medium/field_volume.h"
 
 namespace gladstone {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "render/base/units.h"
 #include "studies/oracles/oracle_media.h"

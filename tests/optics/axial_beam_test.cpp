@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 
-#include "render/base/units.h"
 #include "render/optics/paraxial.h"
 #include "tests/optics/lens_fixtures.h"
 #include "tests/optics/prescription_texts.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "render/base/error.h"
-#include "render/base/units.h"
 #include "render/optics/camera_element.h"
 #include "render/optics/elements/lenslets.h"
 #include "render/optics/ray_bundle.h"

@@ -5,7 +5,6 @@
 
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
-#include "render/scene/build_camera.h"
 #include "tests/scene/read_setup_text.h"
 #include "tests/scene/small_scenes.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "render/base/parallel.h"
@@ -64,9 +63,9 @@ PlannedScene of_most_rays(PlannedScene scene) {
 }
 
 /// Returns the rms error over the lit pixels of the worse frame [grey levels of the plan].
-double image_error(PlannedScene const& scene, LightPair const& found, LightPair const& exact) {
+double image_error(PlannedScene const& scene, FramePair<double> const& found, FramePair<double> const& exact) {
   double worse = 0, level = scene.plan.adaptive_criteria->level;
-  for (auto frame : {&LightPair::reference, &LightPair::flow}) {
+  for (auto frame : {&FramePair<double>::reference, &FramePair<double>::flow}) {
     double square = 0;
     int lit = 0;
     for (std::size_t i = 0; i < (found.*frame).size(); ++i) {

@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "render/base/parallel.h"
-#include "render/base/units.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
 #include "render/rays/rays_ladder.h"
 #include "render/rays/sample_images.h"
 #include "render/rays/source_tracer.h"
-#include "render/scene/build_camera.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -146,7 +144,7 @@ TEST(RaysRenderer, MarginOfChiefAndEdgeRaysHoldsAllRaysThroughASmoothField) {
 /// Truth and light of a scene's dots.
 struct TracedDots {
   std::vector<DotTruth> truth;
-  LightPair light;
+  FramePair<double> light;
   StatusCounts statuses;
 };
 

@@ -24,24 +24,24 @@ PlannedScene wave_scene(Focus focus) {
 }
 
 /// Returns the light of a grey level of 12 bits with the brightest pixel of both frames at 90 % of full scale.
-double level_of(LightPair const& light) {
+double level_of(FramePair<double> const& light) {
   return std::max(*std::max_element(light.reference.begin(), light.reference.end()),
                   *std::max_element(light.flow.begin(), light.flow.end())) /
          (0.9 * 4095);
 }
 
-LightPair render_light(PlannedScene const& scene) {
+FramePair<double> render_light(PlannedScene const& scene) {
   return RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no).light;
 }
 
 /// Returns the scatter of an image in the worse frame, from two images with different seeds: rms over lit pixels
 /// [levels].
 double scatter_of_images(PlannedScene scene, double level) {
-  LightPair const one = render_light(scene);
+  FramePair<double> const one = render_light(scene);
   scene.setup.render.seed = repeat_seed(scene.setup.render.seed, 5);
-  LightPair const other = render_light(scene);
+  FramePair<double> const other = render_light(scene);
   double worse = 0;
-  for (auto frame : {&LightPair::reference, &LightPair::flow}) {
+  for (auto frame : {&FramePair<double>::reference, &FramePair<double>::flow}) {
     double square = 0;
     int lit = 0;
     for (std::size_t i = 0; i < (one.*frame).size(); ++i) {

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "render/base/units.h"
 #include "render/optics/ray_bundle.h"
 #include "render/scene/build_camera.h"
 #include "tests/scene/read_setup_text.h"

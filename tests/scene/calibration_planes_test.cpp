@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "tests/scene/read_setup_text.h"

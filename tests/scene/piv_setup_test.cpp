@@ -3,7 +3,6 @@
 
 #include <fstream>
 
-#include "render/base/units.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/particle_scene.h"
 #include "tests/scene/read_setup_text.h"

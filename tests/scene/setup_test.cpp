@@ -3,9 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <limits>
-
 #include "render/scene/build_camera.h"
 #include "render/scene/scene.h"
 #include "tests/scene/read_setup_text.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "render/base/units.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/build_camera.h"
 #include "tests/scene/read_setup_text.h"

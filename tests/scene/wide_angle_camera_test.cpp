@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <memory>
-#include <numeric>
 
 #include "render/base/units.h"
 #include "render/optics/paraxial.h"

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
 
 #include "render/setup/setup_node.h"
 #include "tests/support/expect_error.h"

@@ -1,11 +1,9 @@
 #include "studies/sweep/case_runner.h"
 
-#include <ctime>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <thread>
 
 #include "studies/sweep/case_locks.h"
 #include "studies/sweep/case_measures.h"

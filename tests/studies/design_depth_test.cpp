@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "render/base/units.h"
@@ -13,6 +12,7 @@
 #include "render/scene/scene.h"
 #include "studies/design/sheet.h"
 #include "studies/report/layout_view.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
@@ -21,18 +21,15 @@ constexpr double slope = 100;  // density gradient of the files along X [kg/m^4]
 
 /// A folder with volume.h5, 16 x 16 x 30 mm (35 mm deep if periodic along Z), and plane.h5, 16 x 16 mm, of the density
 /// 1.225 + 100 x.
-class DepthOfTheMedium : public testing::Test {
+class DepthOfTheMedium : public FolderFixture {
  protected:
   void SetUp() override {
-    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("gladstone_depth_") + info->name());
-    std::filesystem::create_directories(folder_);
-    write("volume.h5", 7);
-    write("plane.h5", 1);
+    FolderFixture::SetUp();
+    write_field("volume.h5", 7);
+    write_field("plane.h5", 1);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  void write(std::string const& name, std::size_t planes) const {
+  void write_field(std::string const& name, std::size_t planes) const {
     std::vector<double> values;
     for (std::size_t k = 0; k < planes * 9; ++k) {
       for (int i = 0; i < 9; ++i) values.push_back(1.225 + slope * 2e-3 * (i - 4));
@@ -50,8 +47,6 @@ class DepthOfTheMedium : public testing::Test {
     FixedDesignParameters const given = collect_fixed_parameters(loaded);
     return bos_sheet(loaded.setup, make_design_point(loaded.setup, given));
   }
-
-  std::filesystem::path folder_;
 };
 
 /// Largest displacement by Eq. 9 in the truth of a rendering, over all pixels [px].

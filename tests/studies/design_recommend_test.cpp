@@ -243,8 +243,7 @@ struct ShippedQuestion {
   std::vector<DesignBranch> branches;
 
   explicit ShippedQuestion(std::vector<std::string> const& overrides) {
-    SetupDocument document = read_setup_document(shared_folder() + "/studies/cases/design.toml");
-    for (std::string const& assignment : overrides) document.override_key(assignment);
+    SetupDocument document = read_setup_document(shared_folder() + "/studies/cases/design.toml", overrides);
     SetupDocument const written = document.copy();
     question = *read_design_question(document);
     variants = design_variants(written, question, skipped);
@@ -315,8 +314,8 @@ TEST(DesignBranches, DotsThatAreChosenDoNotRefuseACamera) {
 // Dots of 0.3 mm at M = 0.07 are 3.8 px of 5.5 um and 10.5 px of 2 um; 20 of the latter in 32 px would cover 1.7 times
 // the target.
 TEST(DesignBranches, SkipsACameraThatDoesNotGoWithTheSetup) {
-  SetupDocument document = read_setup_document(shared_folder() + "/studies/cases/design.toml");
-  document.override_key("target.dot_diameter_mm=0.3");
+  SetupDocument document =
+      read_setup_document(shared_folder() + "/studies/cases/design.toml", {"target.dot_diameter_mm=0.3"});
   DesignQuestion question;
   question.free = {interval(Choice::z_a, 0.3, 2)};
   auto const camera = [](double pitch_um) {

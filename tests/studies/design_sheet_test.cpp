@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "render/base/units.h"
 #include "studies/design/sheet.h"
 #include "studies/design/sheet_text.h"
 #include "studies/figures/design_map.h"
@@ -232,17 +231,14 @@ TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
 // The edge of the sensor sees the edge of the view in the sheet through the middle of the lens.
 TEST(DesignSheet, LayoutOfPivIsToScale) {
   CaseSetup const loaded = load_droplets();
-  OpticalLayout const l = piv_layout(loaded.setup);
+  OpticalLayout const l = make_camera_layout(loaded.setup);
   EXPECT_DOUBLE_EQ(l.lens_z, 0.75);
   EXPECT_NEAR(l.sensor_z - l.lens_z, 1 / (1 / 0.105 - 1 / 0.75), 1e-12);
   EXPECT_NEAR(l.dots_half / l.lens_z, l.sensor_half / (l.sensor_z - l.lens_z), 1e-12);
   EXPECT_NEAR(l.pupil_radius, 0.105 / 8 / 2, 1e-12);
   EXPECT_DOUBLE_EQ(l.sheet_half_thickness, 0.5e-3);
   EXPECT_DOUBLE_EQ(l.dots_z, 0);
-  OpticalLayout const along = make_camera_layout(loaded.setup);
-  EXPECT_DOUBLE_EQ(along.sheet_half_thickness, l.sheet_half_thickness);
-  EXPECT_DOUBLE_EQ(along.sheet_half_height, l.sheet_half_height);
-  EXPECT_EQ(along.medium_half_thickness, 0.0) << "without a field there is no medium to draw";
+  EXPECT_EQ(l.medium_half_thickness, 0.0) << "without a field there is no medium to draw";
 }
 
 // At the f-number of the setup the map agrees with the sheet. Up to f/2.8 images are far smaller than a pixel: the peak

@@ -3,10 +3,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <sstream>
 
 #include "render/files/content_hash.h"

@@ -1,5 +1,3 @@
-#include <ctime>
-
 #include "studies/report/report.h"
 #include "studies/sweep/case_runner.h"
 #include "studies/sweep/collect.h"

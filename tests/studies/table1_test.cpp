@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "render/focused_dots/table_error.h"
 #include "render/planning.h"
 #include "render/render.h"

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <complex>
 
 #include "analysis/correlation/axis_weights.h"

@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-
 #include "analysis/correlation/optical_flow/dense_flow.h"
 #include "render/base/parallel.h"
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "analysis/preparation/frame_changes.h"
 #include "render/base/error.h"
 #include "render/base/vec.h"

@@ -2,7 +2,6 @@
 
 #include <iterator>
 #include <span>
-#include <utility>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"

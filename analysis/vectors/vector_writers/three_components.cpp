@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "analysis/density/projected_gradient.h"
-#include "render/base/error.h"
 
 namespace gladstone::tomography {
 namespace {

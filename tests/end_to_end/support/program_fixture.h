@@ -11,6 +11,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "tests/end_to_end/support/program.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone::end_to_end {
 
@@ -67,22 +68,14 @@ inline std::string place_of(std::string const& text, std::string const& piece) {
 }
 
 /// Fixture that creates a new folder for each test, in which the program runs.
-class ProgramFixture : public testing::Test {
+class ProgramFixture : public FolderFixture {
  protected:
   void SetUp() override {
-    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              (std::string("gladstone_") + info->test_suite_name() + '_' + info->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
+    FolderFixture::SetUp();
     write("setup.toml", small_setup);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path in(std::string const& name) const { return folder_ / name; }
-  void write(std::string const& name, std::string const& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
   std::string read(std::string const& name) const { return content(folder_ / name); }
 
   Outcome gladstone(std::vector<std::string> arguments) const { return run(std::move(arguments), folder_); }
@@ -207,8 +200,6 @@ class ProgramFixture : public testing::Test {
     return {"/dots/position_m", "/dots/reference_px", "/dots/displacement_px", "/dots/displacement_std_px",
             "/dots/rays",       "/dots/eq9_px",       "/dots/eq9_cone_px",     "/rays/status"};
   }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace gladstone::end_to_end

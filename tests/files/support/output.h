@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/folder_fixture.h"
+
 namespace gladstone {
 
 inline std::string content(std::filesystem::path const& path) {
@@ -36,20 +38,9 @@ class FileSizeLimit {
   rlimit before_{};
 };
 
-/// Fixture with a new directory for each test.
-class Output : public testing::Test {
+/// Fixture that creates a new folder for each test, and lists the names in it.
+class Output : public FolderFixture {
  protected:
-  void SetUp() override {
-    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::path(testing::TempDir()) / (std::string("output_") + info->test_suite_name() + info->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string in_folder(std::string const& name) const { return (folder_ / name).string(); }
-  void write(std::string const& name, std::string const& text) const { std::ofstream(folder_ / name) << text; }
   std::vector<std::string> names(std::string const& folder = ".") const {
     std::vector<std::string> found;
     for (auto const& entry : std::filesystem::directory_iterator(folder_ / folder)) {
@@ -58,8 +49,6 @@ class Output : public testing::Test {
     std::sort(found.begin(), found.end());
     return found;
   }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace gladstone

@@ -9,6 +9,7 @@
 
 #include "studies/sweep/plan.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 
@@ -37,22 +38,14 @@ inline std::vector<ManifestCase> all_cases(StudyPlan const& plan) {
 }
 
 /// Fixture that creates a new folder with a base setup for each test.
-class StudyFolder : public testing::Test {
+class StudyFolder : public FolderFixture {
  protected:
   void SetUp() override {
-    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              (std::string("gladstone_") + info->test_suite_name() + '_' + info->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
+    FolderFixture::SetUp();
     write("base.toml", small_base);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::string in(std::string const& name) const { return (folder_ / name).string(); }
-  void write(std::string const& name, std::string const& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
+  std::string in(std::string const& name) const { return in_folder(name); }
   StudyFile study(std::string const& text) const {
     write("study.toml", text);
     return read_study(in("study.toml"));
@@ -63,8 +56,6 @@ class StudyFolder : public testing::Test {
   std::string complaint(std::string const& text) const {
     return error_of([&] { plan(text); });
   }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace gladstone

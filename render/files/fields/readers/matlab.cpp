@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <limits>
 
 #include "render/base/error.h"
 #include "render/files/fields/readers/byte_range.h"
