@@ -13,7 +13,7 @@ RenderMethod resolve_render_method(Scene const& scene, RenderPlan const& plan) {
   RenderMethod const wanted = planned ? plan.method : scene.setup.render.method;
   if (wanted != RenderMethod::automatic) return wanted;
   if (scene.setup.has_ideal_particles()) return RenderMethod::formula;
-  return focused_dots(scene) ? RenderMethod::focused_dots : RenderMethod::rays;
+  return build_focused_dots(scene) ? RenderMethod::focused_dots : RenderMethod::rays;
 }
 
 char const* to_string(RenderMethod method) {
@@ -30,7 +30,7 @@ char const* to_string(RenderMethod method) {
 }
 
 FocusedDots require_focused_dots(Scene const& scene, RenderPlan const& plan) {
-  std::optional<FocusedDots> const dots = focused_dots(scene, plan);
+  std::optional<FocusedDots> const dots = build_focused_dots(scene, plan);
   if (dots) return *dots;
   throw DataError(ErrorCode::invalid_value, KeyPath{"render.method"},
                   "\"focused_dots\" is not valid here, since " + std::string(to_string(table_state(scene))) +

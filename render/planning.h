@@ -12,9 +12,9 @@ namespace gladstone {
 RenderPlan plan_step(Scene const& scene);
 
 /// Chooses integration step, method and number of rays of a scene where its setup leaves them open. For "auto" it
-/// selects the fast renderer if that supports the scene (focused_dots()), with the number of rays and the fineness by
-/// which its deflection table meets the accuracy goals, or comes closest. Otherwise the general renderer adds rays
-/// until the goals or its budget are reached.
+/// selects the fast renderer if that supports the scene (build_focused_dots()), with the number of rays and the
+/// fineness by which its deflection table meets the accuracy goals, or comes closest. Otherwise the general renderer
+/// adds rays until the goals or its budget are reached.
 /// @param step  step of the same scene, if known; null: chosen
 /// @throws DataError if the scene does not meet the conditions of its method
 RenderPlan plan_rendering(Scene const& scene, IntegrationStep const* step = nullptr);

@@ -72,7 +72,7 @@ Rendering Device::render_particles(Scene const& scene, RenderPlan const& given, 
   if (scene.second_medium) return render_in_two_media(*this, scene, given, particles, light, images);
   RenderPlan const plan = with_method(scene, given);
   if (plan.method == RenderMethod::formula) {
-    auto const ideal = ideal_images(scene);
+    auto const ideal = build_ideal_images(scene);
     GLADSTONE_EXPECTS(ideal);
     Rendering rendering = render_ideal_images(*ideal, particles, light, images, drawer_.get());
     rendering.device = drawer_ ? drawer_->device() : "cpu";

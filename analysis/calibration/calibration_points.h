@@ -5,7 +5,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Aperture and focal plane of the lens through which the dots are imaged. They are needed for defocused dots: if the
 /// irradiance varies across the entrance pupil, the centroid of a defocused dot image deviates from the chief ray's
@@ -32,4 +32,4 @@ struct CalibrationPoints {
 inline constexpr double disc_rule = 0.70710678118654752;  // r / sqrt(2) along each axis
 inline constexpr std::array<Vec2d, 4> disc_points{{{disc_rule, 0}, {-disc_rule, 0}, {0, disc_rule}, {0, -disc_rule}}};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

@@ -10,7 +10,7 @@
 #include "analysis/calibration/dot_regions.h"
 #include "analysis/preparation/illumination.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 namespace {
 
 // minimum standard deviation of the noise, assumed for images of integer grey levels, whose rounding may hide the noise
@@ -228,4 +228,4 @@ DetectedDots detect_dots(Image<double> const& picture) {
   return found;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

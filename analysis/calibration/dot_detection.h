@@ -5,7 +5,7 @@
 #include "render/base/image.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Dot measured in an image of a calibration target.
 struct DetectedDot {
@@ -38,4 +38,4 @@ struct DetectedDots {
 /// @return no dots if no region exceeds the noise
 DetectedDots detect_dots(Image<double> const& picture);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

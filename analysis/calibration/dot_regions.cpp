@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 namespace {
 
 constexpr double least_contrast = 8;  // minimum ratio of the dots' peak height to the standard deviation of the noise
@@ -167,4 +167,4 @@ DotRegions find_dot_regions(Image<double> const& levels, double noise) {
   return found;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

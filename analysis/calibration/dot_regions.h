@@ -5,7 +5,7 @@
 #include "render/base/image.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Standard deviation of the Gaussian filter applied before the region search [px]. Centroids are measured in the
 /// unfiltered image.
@@ -37,4 +37,4 @@ struct DotRegions {
 /// @param noise   standard deviation of the grey levels
 DotRegions find_dot_regions(Image<double> const& levels, double noise);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

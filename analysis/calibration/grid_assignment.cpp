@@ -11,7 +11,7 @@
 
 #include "analysis/calibration/grid_smoothness.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 namespace {
 
 // maximum distance of a neighbour from its predicted position, relative to the distance between neighbours
@@ -211,4 +211,4 @@ AssignedDots assign_to_grid(std::vector<DetectedDot> const& dots, CalibrationGri
   return assigned;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

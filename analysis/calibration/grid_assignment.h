@@ -4,7 +4,7 @@
 
 #include "analysis/calibration/dot_detection.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Grid of dots on a calibration target: dot (i, j) is at (i, j) times the spacing, with |i| <= half_columns and |j| <=
 /// half_rows.
@@ -54,4 +54,4 @@ struct AssignedDots {
 AssignedDots assign_to_grid(std::vector<DetectedDot> const& dots, CalibrationGrid const& grid,
                             ExpectedView const& expected);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

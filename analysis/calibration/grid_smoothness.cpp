@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 namespace {
 
 constexpr std::size_t least_for_cubic = 30, least_dots = 15;
@@ -115,4 +115,4 @@ SmoothGrid remove_inconsistent_spots(std::vector<GridDot> dots) {
   return grid;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

@@ -4,7 +4,7 @@
 
 #include "analysis/calibration/grid_assignment.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Dots of one plane after removal of spots that do not belong to the grid.
 struct SmoothGrid {
@@ -23,4 +23,4 @@ struct SmoothGrid {
 /// distribution), and the median times 1.4826 for diameters (normal distribution).
 SmoothGrid remove_inconsistent_spots(std::vector<GridDot> dots);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

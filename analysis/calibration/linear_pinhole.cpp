@@ -6,7 +6,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 namespace {
 
 using Camera = Eigen::Matrix<double, 3, 4>;
@@ -102,4 +102,4 @@ bool on_one_plane(CalibrationPoints const& points) {
   return solver.eigenvalues()(0) < 1e-12 * solver.eigenvalues()(2);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

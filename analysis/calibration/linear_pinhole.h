@@ -2,7 +2,7 @@
 
 #include "analysis/calibration/pinhole_fit.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Computes a pinhole camera without distortion by the direct linear transformation (Hartley & Zisserman 2004, section
 /// 7.1, with their normalisation), as the initial value of a fit. The transformation also yields a skew, which is set
@@ -16,4 +16,4 @@ double linear_residual_px(CalibrationPoints const& points);
 /// the largest.
 bool on_one_plane(CalibrationPoints const& points);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

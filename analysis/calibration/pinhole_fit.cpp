@@ -10,7 +10,7 @@
 
 #include "analysis/calibration/linear_pinhole.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 namespace {
 
 constexpr std::size_t least_points = 12;
@@ -252,4 +252,4 @@ PinholeFit fit_pinhole(CalibrationPoints const& points, Vec2d middle_px) {
   return fit;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

@@ -5,7 +5,7 @@
 
 #include "analysis/calibration/calibration_points.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Pinhole camera with Brown's distortion, with OpenCV's parameter names and conventions. For a world point X, let d =
 /// R X + t, where R is the rotation by the vector (rx, ry, rz), (x, y) = (d.x, d.y) / d.z and r^2 = x^2 + y^2.
@@ -53,4 +53,4 @@ struct PinholeFit {
 /// @throws std::invalid_argument if the points are coplanar or fewer than 12, which leaves the camera undetermined
 PinholeFit fit_pinhole(CalibrationPoints const& points, Vec2d middle_px);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

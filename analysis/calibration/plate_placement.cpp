@@ -6,7 +6,7 @@
 
 #include "analysis/calibration/linear_pinhole.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 namespace {
 
 constexpr double least_gain = 5;        // minimum ratio by which another placement must reduce the residual
@@ -215,4 +215,4 @@ std::optional<PlatePlacement> find_drift(PlateDots const& dots, Vec2d principal_
   return placement;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

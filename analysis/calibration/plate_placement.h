@@ -6,7 +6,7 @@
 
 #include "analysis/calibration/calibration_points.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Deviation of the calibration plate from its nominal placement, in which the plate is translated along its own normal
 /// with its centre dot on the Z axis. The plate defines the world frame: X and Y lie in the plate, Z is its normal.
@@ -49,4 +49,4 @@ std::optional<PlatePlacement> find_misidentified_centres(PlateDots const& dots, 
 /// @return nullopt if no drift brings the principal point to within 1 px of the expected one
 std::optional<PlatePlacement> find_drift(PlateDots const& dots, Vec2d principal_point_px);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

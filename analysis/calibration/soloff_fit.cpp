@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 namespace {
 
 constexpr int cubic = 3;
@@ -79,4 +79,4 @@ SoloffFit fit_soloff(CalibrationPoints const& points) {
   return fit;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

@@ -5,7 +5,7 @@
 
 #include "analysis/calibration/calibration_points.h"
 
-namespace gladstone {
+namespace gladstone::inline calibration {
 
 /// Polynomial camera model: pixel position as a polynomial of the world position, cubic in X and Y and quadratic in Z,
 /// 19 terms per component (Soloff, Adrian & Liu, Meas. Sci. Technol. 8 (1997) 1441, Eq. 21). The polynomial requires no
@@ -28,4 +28,4 @@ struct SoloffFit {
 ///         columns, rows or planes of dots
 SoloffFit fit_soloff(CalibrationPoints const& points);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline calibration

@@ -6,7 +6,7 @@
 #include "analysis/correlation/window_ops.h"
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Non-owning view of the weights of all windows of a grid along one axis, for host and device.
 struct AxisWeightsView {
@@ -93,4 +93,4 @@ class AxisWeights {
   std::vector<double> sums_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

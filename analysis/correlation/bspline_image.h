@@ -10,7 +10,7 @@
 #include "render/base/host_device.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Pseudo-degree that selects a windowed sinc over eight pixels instead of a B-spline; its coefficients are the pixels.
 inline constexpr int windowed_sinc = 7;
@@ -265,4 +265,4 @@ class BsplineImage {
   std::vector<T> coefficients_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

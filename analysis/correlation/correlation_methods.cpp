@@ -4,7 +4,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Table of all correlation methods.
@@ -31,4 +31,4 @@ CorrelationMethod const& correlation_method(std::string const& name) {
   return rows.front();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

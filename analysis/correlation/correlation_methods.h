@@ -6,7 +6,7 @@
 #include "analysis/correlation/interrogation_job.h"
 #include "analysis/correlation/optical_flow/dense_flow.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Standard cross-correlation of weighted windows without their mean.
 std::vector<WindowCorrelation> correlate_scc(InterrogationJob const& job);
@@ -49,4 +49,4 @@ std::span<CorrelationMethod const> all_correlation_methods();
 /// Returns the method of that name. @pre name is one of correlation_methods()
 CorrelationMethod const& correlation_method(std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

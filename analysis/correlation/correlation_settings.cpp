@@ -6,7 +6,7 @@
 
 #include "analysis/correlation/correlation_methods.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 bool CorrelationSettings::gives_scattered_vectors() const {
   return correlation_method(method).tracks_dots && tracking.output == "scattered";
@@ -19,4 +19,4 @@ std::string window_problem(CorrelationSettings const& settings, int columns, int
                      columns, rows, std::min(columns, rows) / 2 * 2);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -7,7 +7,7 @@
 #include "analysis/preparation/frame_preparation.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Table [correlate.tracking] of a setup: parameters of methods that track dots.
 struct TrackingTable {
@@ -66,4 +66,4 @@ struct CorrelationSettings {
 /// empty if there is none.
 std::string window_problem(CorrelationSettings const& settings, int columns, int rows);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

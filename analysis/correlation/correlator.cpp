@@ -7,7 +7,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 std::vector<std::string> correlation_methods() {
   std::vector<std::string> names;
   for (CorrelationMethod const& method : all_correlation_methods()) names.emplace_back(method.name);
@@ -32,4 +32,4 @@ InterrogationGrid final_grid(CorrelationSettings const& settings, int columns, i
   return make_interrogation_grid(columns, rows, settings.window_px.back(), settings.overlap);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

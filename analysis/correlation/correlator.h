@@ -10,7 +10,7 @@
 #include "render/base/frame_pair.h"
 #include "render/base/image.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Measures the displacement field between two images.
 class Correlator {
@@ -47,4 +47,4 @@ std::string missing_on_gpu(CorrelationSettings const& settings);
 /// Returns the window grid of the last pass; the vectors are at the window centres.
 InterrogationGrid final_grid(CorrelationSettings const& settings, int columns, int rows);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

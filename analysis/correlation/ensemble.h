@@ -7,7 +7,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/frame_pair.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Sequence of image pairs with a common displacement field, indexed from 0. Each pair is requested once per pass.
 struct PairSequence {
@@ -24,4 +24,4 @@ struct PairSequence {
 /// applies to single pairs only
 DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSettings const& settings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

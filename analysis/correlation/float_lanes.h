@@ -9,7 +9,7 @@
 
 /// SIMD vectors of eight floats, one for each of eight windows processed together (vector extensions of GCC and clang;
 /// one AVX register).
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 constexpr int lane_count = 8;
 using FloatLanes = float __attribute__((vector_size(4 * lane_count)));
@@ -113,4 +113,4 @@ inline FloatLanes exp_lanes(FloatLanes x) {
   return series * reinterpret_cast<FloatLanes>((whole + 127) << 23);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -4,7 +4,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 void fourier_transform(std::vector<std::complex<double>> const& in, std::vector<std::complex<double>>& out, int size,
                        FourierDirection direction) {
@@ -14,4 +14,4 @@ void fourier_transform(std::vector<std::complex<double>> const& in, std::vector<
   cv::dft(from, to, direction == FourierDirection::inverse ? cv::DFT_INVERSE : 0);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 enum class FourierDirection { forward, inverse };
 
@@ -14,4 +14,4 @@ enum class FourierDirection { forward, inverse };
 void fourier_transform(std::vector<std::complex<double>> const& in, std::vector<std::complex<double>>& out, int size,
                        FourierDirection direction);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -7,7 +7,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Image axis: along the columns (x) or along the rows (y).
 enum class GridAxis { x, y };
@@ -92,4 +92,4 @@ inline InterrogationGrid make_centred_grid(int image_columns, int image_rows, in
   return grid;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -9,7 +9,7 @@
 #include "analysis/correlation/window_measurement.h"
 #include "analysis/correlation/window_ops.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 class PlaneSums;
 
@@ -30,4 +30,4 @@ struct InterrogationJob {
 /// threads.
 using CorrelateWindows = std::vector<WindowCorrelation> (*)(InterrogationJob const& job);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -5,7 +5,7 @@
 #include "analysis/correlation/window_deformation.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Coarse map of the image tiles in which all pixels are known, for fast tests of whether a rectangle contains known
 /// pixels only.
@@ -38,4 +38,4 @@ class KnownTiles {
   std::vector<char> known_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

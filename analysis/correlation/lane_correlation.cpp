@@ -11,7 +11,7 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 constexpr std::size_t windows_per_chunk = 8 * lane_count;
@@ -185,4 +185,4 @@ std::vector<WindowCorrelation> correlate_in_lanes(InterrogationJob const& job, P
   return results;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

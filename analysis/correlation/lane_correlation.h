@@ -6,7 +6,7 @@
 #include "analysis/correlation/lane_fourier.h"
 #include "analysis/correlation/lane_windows.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Modifies the cross spectrum of eight windows at the wave numbers (kx, ky), ky = 0 .. size - 1, in the order of the
 /// transform: elements from ky = size/2 on have the frequency ky - size.
@@ -100,4 +100,4 @@ void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
 /// Correlates all windows of a job by a plane method.
 std::vector<WindowCorrelation> correlate_in_lanes(InterrogationJob const& job, PlaneMethod const& method);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

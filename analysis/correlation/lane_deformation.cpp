@@ -3,7 +3,7 @@
 #include "analysis/correlation/float_lanes.h"
 #include "analysis/correlation/window_deformation.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Eight adjacent positions in a row, (column + l + dx, row + dy) for lane l, split into pixel and offset as in
@@ -110,4 +110,4 @@ void LaneDeformation::row(int degree, int j, std::span<float const> u, std::span
     deform_row<5>(*this, j, u, v, out);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -4,7 +4,7 @@
 
 #include "analysis/correlation/bspline_image.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Output row of a deformed pair.
 struct DeformedRow {
@@ -27,4 +27,4 @@ struct LaneDeformation {
   void row(int degree, int j, std::span<float const> u, std::span<float const> v, DeformedRow const& out) const;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

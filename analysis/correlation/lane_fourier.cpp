@@ -8,7 +8,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Reads a complex number. For a backward transform, read_value() and write_value() exchange real and imaginary parts,
@@ -285,4 +285,4 @@ void LaneFourier::inverse(ComplexLanes const* in, ComplexLanes* out, ComplexLane
   run_any<true, false>({in, 1, size_, out}, size_, size_, scratch, twiddles_.data());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -4,7 +4,7 @@
 
 #include "analysis/correlation/float_lanes.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Returns the smallest size of a LaneFourier that is at least `least`: a product of 2, 3 and 5, divisible by four.
 int lane_fourier_size(int least);
@@ -42,4 +42,4 @@ class LaneFourier {
                    ComplexLanes const* twiddles) = nullptr;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

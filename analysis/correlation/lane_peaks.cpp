@@ -5,7 +5,7 @@
 
 #include "analysis/correlation/window_peak.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Samples of eight maxima and of their left, right, upper and lower neighbours. All samples of an unused lane are 1.
@@ -278,4 +278,4 @@ void LanePeaks::pick(LaneCorrelation const& work, LanePlane const& plane, Window
   for (int p = 0; p < most; ++p) measure_all(work, plane, p, found, results);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

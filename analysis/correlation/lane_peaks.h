@@ -5,7 +5,7 @@
 #include "analysis/correlation/lane_correlation.h"
 #include "analysis/correlation/peak_search.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Finds and measures the peaks of eight correlation planes in SIMD lanes, with the same results as find_peaks() and
 /// fitted_peak().
@@ -40,4 +40,4 @@ class LanePeaks {
   std::vector<PlanePeak<float>> refined_;             // maxima of one window with interpolated heights
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 int whole_lanes(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
@@ -209,4 +209,4 @@ FloatLanes LaneWindows::scale(int size) {
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -8,7 +8,7 @@
 #include "analysis/correlation/known_tiles.h"
 #include "analysis/correlation/window_means.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Pair of real images of a window to be correlated. A and B are the frames without their means, w the weights.
 enum class WindowTerm {
@@ -80,4 +80,4 @@ class LaneWindows {
   std::vector<float> patch_[lane_count];
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

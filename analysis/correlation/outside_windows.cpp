@@ -7,7 +7,7 @@
 #include "analysis/correlation/vector_validation.h"
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 enum class Place { known, unknown, outside };
@@ -62,4 +62,4 @@ void mark_windows_outside(DisplacementField& field, StoredFrames const& frames, 
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

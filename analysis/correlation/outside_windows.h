@@ -4,7 +4,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/frame_pair.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Changes the status of masked vectors whose windows were moved out of the frames to invalid (VectorReason::outside).
 /// Such vectors are reported as masked at first, because passes deform the frames by the predictor and count pixels
@@ -14,4 +14,4 @@ namespace gladstone {
 /// @param field  result of a correlator for these frames and settings
 void mark_windows_outside(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -17,7 +17,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Minimum fraction of the windows with a signal that must pass the decorrelation test.
@@ -334,4 +334,4 @@ void assess_ensemble(DisplacementField& field, PairSequence const& pairs, Correl
   judge(field, {all_same, any_period, chance}, settings);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -5,7 +5,7 @@
 
 /// Assessment of an image pair as a whole: detects frames that do not correlate, identical frames and periodic
 /// patterns.
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Invalidates vectors that correlate no better than unrelated frames (decorrelation test, VectorReason::uncorrelated).
 /// Invalidates all vectors if fewer than a quarter of the windows with a signal pass the test.
@@ -51,4 +51,4 @@ bool are_identical_frames(Image<double> const& a, Image<double> const& b);
 /// @param field  result of correlate_ensemble() for these pairs
 void assess_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -11,7 +11,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/window_pixels.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Returns a grid of windows over the whole image, at most four along each axis.
@@ -115,4 +115,4 @@ std::optional<PatternPeriod> pattern_period(Image<double> const& image, Correlat
   return period;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -5,7 +5,7 @@
 #include "analysis/correlation/correlation_settings.h"
 #include "render/base/image.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Period of a repeating pattern.
 struct PatternPeriod {
@@ -24,4 +24,4 @@ struct PatternPeriod {
 /// first pass; a smaller period makes displacements within the search range ambiguous
 std::optional<PatternPeriod> pattern_period(Image<double> const& image, CorrelationSettings const& settings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

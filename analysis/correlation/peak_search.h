@@ -10,7 +10,7 @@
 /// the maximum of a peak (a Gaussian of 1 px) is half a pixel away from the nearest samples along an axis, the highest
 /// sample is 12 % lower than the maximum. Ranking by samples would therefore favour peaks near whole pixels, for
 /// example aliases of a regular pattern.
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Correlation plane in the order of an inverse transform: shift (dx, dy) in row dy mod size, column dx mod size.
 template <class T>
@@ -191,4 +191,4 @@ GLADSTONE_HD PeakList<T> find_peaks(PlaneView<T> plane, int radius) {
   return found;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

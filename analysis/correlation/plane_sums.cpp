@@ -1,6 +1,6 @@
 #include "analysis/correlation/plane_sums.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 PlaneSums::PlaneSums(std::size_t windows, int radius) {
   std::size_t const side = static_cast<std::size_t>(LanePlane(radius).side());
@@ -27,4 +27,4 @@ void PlaneSums::add(std::size_t first, int count, LanePlane& plane, WindowCorrel
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -6,7 +6,7 @@
 #include "analysis/correlation/lane_correlation.h"
 #include "analysis/correlation/window_measurement.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Sums over image pairs of the correlation planes of all windows of a grid, for ensemble correlation (Meinhart,
 /// Wereley & Santiago, J. Fluids Eng. 122 (2000) 285). The planes are correlation coefficients, so that all pairs have
@@ -29,4 +29,4 @@ class PlaneSums {
   std::vector<int> measured_;  // number of pairs summed for each window
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

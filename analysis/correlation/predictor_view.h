@@ -8,7 +8,7 @@
 #include "render/base/vec.h"
 
 /// Interpolation of a displacement given at the nodes of a grid, by functions shared by the CPU and the CUDA kernels.
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Computes the weights of Keys' kernel (a = -1/2) for the nodes -1, 0, 1, 2, at a distance t from node 0 towards node
 /// 1.
@@ -88,4 +88,4 @@ struct PredictorView {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

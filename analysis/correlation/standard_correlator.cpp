@@ -19,7 +19,7 @@
 #include "render/base/freed_memory.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 constexpr std::size_t vectors_per_chunk = 512;
@@ -251,4 +251,4 @@ WindowWeighting window_weighting(CorrelationSettings const& settings) {
   return settings.weighting == "gaussian" ? WindowWeighting::gaussian : WindowWeighting::uniform;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

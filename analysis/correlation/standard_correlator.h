@@ -11,7 +11,7 @@
 #include "analysis/correlation/window_ops.h"
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Creates a multi-pass cross-correlator for the CPU. Each pass deforms both images by the validated and smoothed
 /// result of the previous pass, correlates smaller windows, and adds the residual displacement. The first pass searches
@@ -160,4 +160,4 @@ DisplacementField displacement_field(InterrogationGrid const& grid, std::span<Me
 /// Returns the weighting of that name. @pre settings.weighting is "gaussian" or "uniform"
 WindowWeighting window_weighting(CorrelationSettings const& settings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -6,7 +6,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 constexpr int fitted_steps = 2;  ///< half-width of the neighbourhood from which a node is extrapolated [nodes]
@@ -175,4 +175,4 @@ double take_refined(RefinedPass& pass, RefinedPass const& refined, RefinementPla
   return largest;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -15,7 +15,7 @@
 /// Schrijer & Scarano, Exp. Fluids 45 (2008) 927, for the stability of the iterations with filtered predictors). Each
 /// additional pass proceeds by one ring of windows further into the gradient. The additional passes also reduce the
 /// damping of displacement waves that are hardly longer than the window.
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Displacement gradient from which vectors are refined [px/px]: a Gaussian window of 20 px (standard deviation 8 px)
 /// then contains displacements that differ by half a particle diameter. The fields for which the default passes are
@@ -106,4 +106,4 @@ void refine_steep_vectors(RefinedPass& pass, InterrogationGrid const& grid, int 
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

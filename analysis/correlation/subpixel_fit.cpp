@@ -4,7 +4,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Table of all subpixel fits.
@@ -30,4 +30,4 @@ SubpixelMethod const& subpixel_method(std::string const& name) {
   return fits.front();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Samples around the highest sample of a peak; the decrease of the plane caused by the weights is divided out.
 struct PeakPatch {
@@ -49,4 +49,4 @@ std::vector<std::string> subpixel_fits();
 /// Returns the fit of that name. @pre name is one of subpixel_fits()
 SubpixelMethod const& subpixel_method(std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -4,7 +4,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Returns the vertex of the parabola through (-1, left), (0, centre), (1, right), clamped to [-1, 1], in sample
 /// distances from the centre; 0 if the parabola does not open downwards.
@@ -49,4 +49,4 @@ GLADSTONE_HD PeakBetweenSamples<T> gaussian_peak(T left, T centre, T right) {
   return {offset, positive ? rise : fast_log(c + rise)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

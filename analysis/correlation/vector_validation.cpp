@@ -5,7 +5,7 @@
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 constexpr std::size_t validated_per_chunk = 256;
@@ -94,4 +94,4 @@ std::vector<Vec2d> smoothed_displacement(std::span<Vec2d const> nodes, int colum
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

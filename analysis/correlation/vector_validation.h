@@ -10,7 +10,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Neighbours of a vector on its grid: up to eight of the surrounding 3x3. Only compile-time indices are used, so that
 /// a GPU stores the array in registers.
@@ -368,4 +368,4 @@ std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int 
 /// Smooths the nodes by smoothed() along each axis, except across the border, so that linear fields remain unchanged.
 std::vector<Vec2d> smoothed_displacement(std::span<Vec2d const> nodes, int columns, double part);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

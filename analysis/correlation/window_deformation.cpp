@@ -9,7 +9,7 @@
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 constexpr std::size_t rows_per_chunk = 8;
@@ -209,4 +209,4 @@ void PairDeformer::deform(DensePredictor const& predictor, ImagePair& pair) cons
   if (all_known) pair.available.clear();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -11,7 +11,7 @@
 #include "render/base/uninitialized_vector.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Image pair in the form used by a correlation pass: grey levels row by row, in float, after subtraction of a common
 /// level and multiplication by a power of two.
@@ -111,4 +111,4 @@ class PairDeformer {
 /// level and marked as unknown.
 ImagePair make_image_pair(Image<double> const& reference, Image<double> const& flow);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

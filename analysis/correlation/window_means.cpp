@@ -3,7 +3,7 @@
 #include "analysis/correlation/float_lanes.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Adds weight * value[i] to sum[i]. @pre count is a multiple of lane_count
@@ -54,4 +54,4 @@ WindowMeans::WindowMeans(InterrogationJob const& job, AxisWeightsView const& x, 
   });
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

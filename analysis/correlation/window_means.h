@@ -6,7 +6,7 @@
 #include "analysis/correlation/interrogation_job.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Weighted means of both frames over each window of a job that is entirely inside the image. All pixels are assumed to
 /// be known. Windows overlap, so the sums along pixel columns are computed once for all windows of a grid row.
@@ -22,4 +22,4 @@ class WindowMeans {
   std::vector<Vec2<float>> means_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -9,7 +9,7 @@
 #include "render/base/vec.h"
 
 /// Results of one window, and functions that evaluate its correlation plane, shared by the CPU and the CUDA kernels.
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Result of the correlation of one window.
 struct WindowCorrelation {
@@ -56,4 +56,4 @@ GLADSTONE_HD inline double peak_ratio(double first, double second, double third)
   return ratio < largest_peak_ratio ? ratio : largest_peak_ratio;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -7,7 +7,7 @@
 #include "render/base/vec.h"
 
 /// Weights of the pixels of an interrogation window and its cross spectrum, for the CPU and the CUDA kernels.
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Weighting of the pixels of a window.
 enum class WindowWeighting {
@@ -74,4 +74,4 @@ GLADSTONE_HD Vec2<T> cross_spectrum(T z_real, T z_imaginary, T m_real, T m_imagi
           T(0.25) * (m_real * m_real + m_imaginary * m_imaginary - z_real * z_real - z_imaginary * z_imaginary)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

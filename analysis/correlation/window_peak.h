@@ -6,7 +6,7 @@
 #include "analysis/correlation/subpixel_fit.h"
 #include "analysis/correlation/window_measurement.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Converts a subpixel fit to a peak position and height. @param height  value of the peak's highest sample
 GLADSTONE_HD inline MeasuredPeak to_measured_peak(PeakFit const& fit, int peak_x, int peak_y, double height) {
@@ -41,4 +41,4 @@ GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int pe
   return to_measured_peak(fit(patch), peak_x, peak_y, patch.value[1][1]);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -6,7 +6,7 @@
 #include "analysis/correlation/axis_weights.h"
 #include "analysis/correlation/window_deformation.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Calls visit(i, j, weight, at) for every pixel (i, j) of a window's support that is inside the image, row by row;
 /// `at` is the index of the pixel in the frames. The weight is 0 for pixels that are unknown in one of the frames.
@@ -24,4 +24,4 @@ void visit_window_pixels(ImagePair const& pair, AxisWeightsView const& x, int co
     }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

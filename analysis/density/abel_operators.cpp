@@ -9,7 +9,7 @@
 #include "render/base/gauss_legendre.h"
 #include "render/base/units.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Calls visit(x, weight) for each node of the quadrature of integral h(x) dx / sqrt(x^2 - r^2) over [low, high], with
@@ -61,4 +61,4 @@ Eigen::MatrixXd make_gradient_projection(int n) {
   return f;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

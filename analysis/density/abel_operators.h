@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Linear operators of the Abel transform on n radii r_i = i h, i = 0 to n - 1, from the axis outwards. The excess
 /// density f(r), density minus ambient density, is zero beyond the last radius. About the axis, f is even and the
@@ -19,4 +19,4 @@ Eigen::MatrixXd make_gradient_inversion(int n);
 /// @return F [n, n, 1]: g = F f, with g in the unit of f
 Eigen::MatrixXd make_gradient_projection(int n);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

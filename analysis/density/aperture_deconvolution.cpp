@@ -12,7 +12,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Returns the matrix of the orthonormal cosine transform (DCT-II) of n values: row k contains the wave of k half
@@ -105,4 +105,4 @@ std::vector<double> ApertureDeconvolution::apply(std::span<double const> density
   return deconvolved;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -8,7 +8,7 @@
 #include "analysis/density/aperture_transfer.h"
 #include "analysis/density/gradient_map.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Linear filter that compensates the averaging over the aperture cone in an integrated density, with a Wiener gain
 ///   G(q) = H (1 + nu) / (H^2 + nu)
@@ -46,4 +46,4 @@ class ApertureDeconvolution {
   std::unique_ptr<Filter const> filter_;
 };
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

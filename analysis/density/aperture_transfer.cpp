@@ -4,7 +4,7 @@
 
 #include "analysis/density/disc_transfer.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 double compute_aperture_transfer(ApertureCone const& cone, double wavenumber) {
   if (wavenumber == 0.0) return 1.0;
@@ -12,4 +12,4 @@ double compute_aperture_transfer(ApertureCone const& cone, double wavenumber) {
                        cone.thickness, 1.0 / std::abs(wavenumber));
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Cone of rays from a point of the dot plane, which is in focus, to the entrance pupil.
 struct ApertureCone {
@@ -24,4 +24,4 @@ struct ApertureCone {
 /// @return            amplitude relative to infinitely thin rays [1]; negative beyond the first zero (D_c q = 1.22)
 double compute_aperture_transfer(ApertureCone const& cone, double wavenumber);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

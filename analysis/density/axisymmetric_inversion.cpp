@@ -11,7 +11,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings const& settings) {
@@ -173,4 +173,4 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
   return result;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -10,7 +10,7 @@
 #include "analysis/density/symmetry_axis.h"
 #include "analysis/density/window_correlation.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 struct AxisymmetricSettings {
   AxisDirection direction = AxisDirection::vertical;
@@ -54,4 +54,4 @@ struct AxisymmetricDensity {
 ///                     find_symmetry_axis()
 AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, AxisymmetricSettings const& settings);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

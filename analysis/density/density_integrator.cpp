@@ -15,7 +15,7 @@
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 constexpr int not_unknown = -1;
@@ -89,7 +89,7 @@ struct DensityIntegrator::System {
     double sum = 0.0;
     for (std::size_t i = 0; i < d.terms; ++i) {
       Vec2d const& g = gradient[d.node[i]];
-      sum += d.factor[i] * (d.axis == Axis::x ? g.x : g.y);
+      sum += d.factor[i] * (d.axis == LineAxis::x ? g.x : g.y);
     }
     return sum;
   }
@@ -204,10 +204,10 @@ std::vector<Vec2d> DensityIntegrator::compute_sensitivity(std::size_t node) cons
     double const value = s.weight[k] * ((to != not_unknown ? y[to] : 0.0) - (from != not_unknown ? y[from] : 0.0));
     for (std::size_t i = 0; i < d.terms; ++i) {
       Vec2d& target = sensitivity[d.node[i]];
-      (d.axis == Axis::x ? target.x : target.y) += d.factor[i] * value;
+      (d.axis == LineAxis::x ? target.x : target.y) += d.factor[i] * value;
     }
   }
   return sensitivity;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -11,7 +11,7 @@
 #include "analysis/density/reference_density.h"
 #include "analysis/density/regions.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Treatment of a region without reference nodes, whose density is undetermined by a constant.
 enum class UnreferencedRegions { error, leave_out };
@@ -65,4 +65,4 @@ class DensityIntegrator {
   std::unique_ptr<System const> system_;
 };
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

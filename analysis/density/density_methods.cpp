@@ -8,7 +8,7 @@
 #include "analysis/density/axisymmetric_inversion.h"
 #include "render/base/contracts.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Rajendran, Zhang, Bane & Vlachos, Exp. Fluids 61 (2020) 239.
@@ -19,7 +19,7 @@ double weigh_by_variance(LineDifference const& difference, GradientMap const& ma
 /// Five-point Poisson equation with the divergence of the gradient by central differences and natural Neumann
 /// boundaries, for comparison.
 double weigh_by_cells(LineDifference const& difference, GradientMap const& map) {
-  double const spacing = difference.axis == Axis::x ? map.grid.spacing.x : map.grid.spacing.y;
+  double const spacing = difference.axis == LineAxis::x ? map.grid.spacing.x : map.grid.spacing.y;
   return 0.5 * std::max(difference.cells, 1) / (spacing * spacing);
 }
 
@@ -83,4 +83,4 @@ std::span<AbelMethod const> abel_methods() { return inversions; }
 IntegrationMethod const& integration_method(std::string const& name) { return find_method(integrations, name); }
 AbelMethod const& abel_method(std::string const& name) { return find_method(inversions, name); }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -10,7 +10,7 @@
 #include "analysis/density/line_differences.h"
 #include "analysis/density/radial_profile.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 struct AxisymmetricSettings;
 
@@ -55,4 +55,4 @@ std::vector<std::string> method_names(std::span<Method const> methods) {
   return names;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

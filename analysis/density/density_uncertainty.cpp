@@ -9,7 +9,7 @@
 #include "render/base/parallel.h"
 #include "render/base/random_variates.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Number of samples in one partial sum; a fixed number makes the total independent of the number of threads.
@@ -108,4 +108,4 @@ std::vector<double> add_scale_uncertainty(std::vector<double> sigma, std::span<d
   return sigma;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

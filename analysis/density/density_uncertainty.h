@@ -9,7 +9,7 @@
 #include "analysis/density/density_integrator.h"
 #include "analysis/density/window_correlation.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 struct PropagationSettings {
   /// Largest number of unknown nodes up to which the uncertainty is computed exactly.
@@ -61,4 +61,4 @@ std::vector<Vec2d> draw_gradient_error(WindowCorrelation const& correlation, std
 std::vector<double> add_scale_uncertainty(std::vector<double> sigma, std::span<double const> density, double reference,
                                           double relative);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -4,7 +4,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline density {
 
 /// Bessel function of the first kind of order one. Has the name of the Ceres function, so that templates accept both
 /// numbers and Jets.
@@ -39,4 +39,4 @@ T cone_transfer(T pupil, T z_b, T z_d, double thickness, T wavelength) {
   return sum / (double{slices} * z_d);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline density

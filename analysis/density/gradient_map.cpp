@@ -6,7 +6,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Throws DataError if `is_bad` is true for any valid node; the message contains the number of such nodes and the
@@ -54,4 +54,4 @@ void check_gradient_map(GradientMap const& map) {
       "the uncertainty is not a positive number", "estimate the uncertainty for every vector, or for none");
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

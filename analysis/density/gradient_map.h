@@ -6,7 +6,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Regular grid of nodes in the medium's mid-plane, stored row by row: node (column, row) is at origin +
 /// (column spacing.x, row spacing.y) with x to the right and y up, so that row 0 is the lowest row.
@@ -39,4 +39,4 @@ struct GradientMap {
 ///                    gradient or its sigma is not finite (sigma: not positive) at a valid node
 void check_gradient_map(GradientMap const& map);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

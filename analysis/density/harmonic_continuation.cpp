@@ -4,7 +4,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 HarmonicContinuation::HarmonicContinuation(PlaneGrid const& grid, std::span<std::uint8_t const> determined) {
   std::vector<int> unknown(grid.size(), -1);
@@ -46,4 +46,4 @@ Eigen::VectorXd HarmonicContinuation::fill(std::span<double const> density) cons
   return filled;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -8,7 +8,7 @@
 
 #include "analysis/density/gradient_map.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Linear continuation of a density into its holes by the five-point Laplace equation, with natural conditions at the
 /// borders of the grid.
@@ -32,4 +32,4 @@ class HarmonicContinuation {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> laplace_;
 };
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

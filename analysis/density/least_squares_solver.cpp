@@ -4,7 +4,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 NormalEquations::NormalEquations(Matrix const& matrix, std::size_t direct_limit) : matrix_(matrix) {
   if (static_cast<std::size_t>(matrix_.rows()) <= direct_limit) {
@@ -42,4 +42,4 @@ Eigen::VectorXd NormalEquations::solve(Eigen::VectorXd const& right_side) const 
                               residual.norm() / right_side.norm()));
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <memory>
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Solver of the normal equations N x = b for many right-hand sides, with N sparse, symmetric and positive definite.
 /// Sparse Cholesky factorisation (Eigen SimplicialLDLT, approximate minimum degree) up to `direct_limit` unknowns; for
@@ -27,4 +27,4 @@ class NormalEquations {
   std::unique_ptr<Preconditioner> preconditioner_;
 };
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -1,6 +1,6 @@
 #include "analysis/density/line_differences.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 struct Step {
@@ -11,7 +11,7 @@ struct Step {
 LineDifference make_difference(GradientMap const& map, int column, int row, Step step, EdgeRule rule) {
   PlaneGrid const& grid = map.grid;
   LineDifference d;
-  d.axis = step.x != 0 ? Axis::x : Axis::y;
+  d.axis = step.x != 0 ? LineAxis::x : LineAxis::y;
   double const h = step.x != 0 ? grid.spacing.x : grid.spacing.y;
   auto const node_at = [&](int k) { return grid.index(column + k * step.x, row + k * step.y); };
   auto const is_valid = [&](int k) { return map.is_valid(column + k * step.x, row + k * step.y); };
@@ -66,10 +66,10 @@ double compute_variance(LineDifference const& difference, std::vector<Vec2d> con
   double sum = 0.0;
   for (std::size_t i = 0; i < difference.terms; ++i) {
     Vec2d const s = sigma.empty() ? Vec2d{1.0, 1.0} : sigma[difference.node[i]];
-    double const term = difference.factor[i] * (difference.axis == Axis::x ? s.x : s.y);
+    double const term = difference.factor[i] * (difference.axis == LineAxis::x ? s.x : s.y);
     sum += term * term;
   }
   return sum;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

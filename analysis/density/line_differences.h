@@ -6,7 +6,7 @@
 
 #include "analysis/density/gradient_map.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Quadrature rule for the density difference between neighbouring nodes.
 enum class EdgeRule {
@@ -18,12 +18,12 @@ enum class EdgeRule {
   four_point
 };
 
-enum class Axis { x, y };
+enum class LineAxis { x, y };
 
 /// One equation of the integration: density[to] - density[from] = sum over k of factor[k] gradient[node[k]].axis.
 struct LineDifference {
   std::size_t from = 0, to = 0;  ///< indices of neighbouring nodes, `to` being that with the larger coordinate
-  Axis axis = Axis::x;
+  LineAxis axis = LineAxis::x;
   std::size_t terms = 0;  ///< number of gradients, 2 to 4
   std::array<std::size_t, 4> node{};
   std::array<double, 4> factor{};  ///< quadrature weights of the gradients [m]
@@ -38,4 +38,4 @@ std::vector<LineDifference> make_line_differences(GradientMap const& map, EdgeRu
 /// @param sigma  standard uncertainty of the gradient [grid.size()]; empty: 1 for all nodes
 double compute_variance(LineDifference const& difference, std::vector<Vec2d> const& sigma);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

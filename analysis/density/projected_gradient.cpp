@@ -8,7 +8,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 void check_optics(ProjectionOptics const& optics) {
@@ -125,4 +125,4 @@ GradientMap compute_mean_gradient(GradientMap const& projected, double thickness
   return mean;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -5,7 +5,7 @@
 #include "analysis/density/gradient_map.h"
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Quantities of a BOS set-up that determine the ratio of displacement to projected density gradient.
 struct ProjectionOptics {
@@ -53,4 +53,4 @@ ProjectedGradient compute_projected_gradient(DisplacementField const& field, Pro
 /// @throws SetupError  if the thickness is not positive and finite
 GradientMap compute_mean_gradient(GradientMap const& projected, double thickness);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -10,7 +10,7 @@
 #include "analysis/density/lagrange_cubics.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 using Weights = std::vector<std::pair<int, double>>;  ///< columns and their weights
@@ -91,4 +91,4 @@ RadialProfile fold_row(GradientMap const& map, int row, double axis) {
   return profile;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

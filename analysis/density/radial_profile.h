@@ -4,7 +4,7 @@
 
 #include "analysis/density/gradient_map.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Radial profile of the gradient across a vertical axis in one row, combined from both sides of the axis.
 struct RadialProfile {
@@ -36,4 +36,4 @@ int count_radii(PlaneGrid const& grid, double axis);
 /// @param axis  x of the axis, inside or outside the grid [m]
 RadialProfile fold_row(GradientMap const& map, int row, double axis);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

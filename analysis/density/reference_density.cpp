@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 void check_reference_value(double value, double sigma) {
@@ -69,4 +69,4 @@ ReferenceDensity combine_references(ReferenceDensity a, ReferenceDensity const& 
   return a;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -4,7 +4,7 @@
 
 #include "analysis/density/gradient_map.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Nodes of known density. They fix the constant of an integration and are its Dirichlet boundary condition.
 struct ReferenceDensity {
@@ -31,4 +31,4 @@ ReferenceDensity make_side_reference(PlaneGrid const& grid, GridSide side, doubl
 /// @pre both references belong to the same grid
 ReferenceDensity combine_references(ReferenceDensity a, ReferenceDensity const& b);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Labels the region of one seed node and returns its extent.
@@ -65,4 +65,4 @@ std::string describe_region(Region const& region) {
                      region.first_row, region.last_row);
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

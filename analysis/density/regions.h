@@ -6,7 +6,7 @@
 
 #include "analysis/density/gradient_map.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Connected set of valid nodes, in which neighbours along x or y are connected. A gradient determines the density of a
 /// region up to one constant.
@@ -28,4 +28,4 @@ RegionMap find_regions(GradientMap const& map);
 /// Returns a description such as "820 nodes in columns 0-40, rows 3-22" for messages.
 std::string describe_region(Region const& region);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

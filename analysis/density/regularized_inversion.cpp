@@ -7,7 +7,7 @@
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Returns the matrix of second differences of an even profile that is zero beyond its last radius.
@@ -103,4 +103,4 @@ double choose_regularization(Eigen::MatrixXd const& projection, std::span<Radial
   return std::exp(best);
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

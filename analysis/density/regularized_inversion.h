@@ -5,7 +5,7 @@
 
 #include "analysis/density/radial_profile.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Tikhonov-regularised Abel inversion: minimises
 ///   sum_i ((g_i - (F f)_i) / sigma_i)^2 + lambda sum_i (f_i-1 - 2 f_i + f_i+1)^2 / mean(sigma^2)
@@ -33,4 +33,4 @@ enum class RegularizationChoice {
 double choose_regularization(Eigen::MatrixXd const& projection, std::span<RadialProfile const> profiles,
                              RegularizationChoice choice);
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -10,7 +10,7 @@
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Gradient across the axis minus its mean; zero at invalid nodes and outside the grid.
@@ -139,4 +139,4 @@ SymmetryAxis find_symmetry_axis(GradientMap const& map, AxisDirection direction,
           map.grid.spacing.x * std::sqrt(compute_centre_variance(map, gradient, overlap))};
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

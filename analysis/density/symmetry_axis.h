@@ -3,7 +3,7 @@
 #include "analysis/density/gradient_map.h"
 #include "analysis/density/window_correlation.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Direction of the axis of an axisymmetric flow in the plane of the grid.
 enum class AxisDirection { vertical, horizontal };
@@ -27,4 +27,4 @@ struct SymmetryAxis {
 /// @throws DataError  if the gradient vanishes, or the axis found is within two nodes of the border
 SymmetryAxis find_symmetry_axis(GradientMap const& map, AxisDirection direction, WindowOverlap overlap = {});
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Throws SetupError if windows of `window` grid steps do not fit into an axis of `size` nodes.
@@ -76,4 +76,4 @@ std::vector<double> WindowCorrelation::correlate_transposed(std::span<double con
   return multiply<true>(values);
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

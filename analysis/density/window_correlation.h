@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Size of the interrogation windows relative to the distance between vectors, along x and y [1]: 1 / (1 - overlap).
 /// Values up to 1 mean vectors with independent errors. For weighted windows, use the effective window size: the size
@@ -52,4 +52,4 @@ class WindowCorrelation {
   Factor along_x_, along_y_;
 };
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -8,7 +8,7 @@
 #include "analysis/correlation/window_ops.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 namespace {
 
 /// Predictor by which a pass deforms the frames; zero in the first pass.
@@ -66,4 +66,4 @@ WindowTruth deformed_window_truth(std::span<Vec2d const> reference_px, std::span
   return measured(centres_px, settings.window_px.back());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

@@ -5,7 +5,7 @@
 #include "analysis/correlation/correlation_settings.h"
 #include "analysis/errors/window_truth.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 
 /// Computes the true window displacement for multi-pass correlation with image deformation. It applies the passes to
 /// the true dot displacements, without noise and to first order in the residual displacement. Each pass deforms both
@@ -23,4 +23,4 @@ WindowTruth deformed_window_truth(std::span<Vec2d const> reference_px, std::span
                                   CorrelationSettings const& settings, int columns, int rows,
                                   TruthAt at = TruthAt::mid_position);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

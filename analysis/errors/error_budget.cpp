@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 namespace {
 
 /// One link of the chain: a stage, and the term that is the difference from the previous stage; the first stage has no
@@ -211,4 +211,4 @@ double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> erro
   return filled == 0 ? not_a_number : std::sqrt(square / filled);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

@@ -9,7 +9,7 @@
 #include "analysis/errors/error_summary.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 
 /// One stage of the displacement chain, from theory to measurement: displacements at N common vectors.
 struct BudgetStage {
@@ -87,4 +87,4 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
 /// with a finite truth and error.
 double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

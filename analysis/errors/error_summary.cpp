@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 namespace {
 
 double mean(ErrorSample const& errors, double Vec2d::*component) {
@@ -157,4 +157,4 @@ std::vector<std::pair<std::string_view, double>> error_measures(std::span<Vec2d 
   return summarize_errors(measured, truth, mask, total).values(&ErrorMeasure::of_case);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

@@ -10,7 +10,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 
 /// Selection of the vectors to which a comparison refers, one entry per vector: nonzero if the vector is counted. All
 /// comparisons of a case use the same mask.
@@ -86,4 +86,4 @@ std::vector<std::pair<std::string_view, double>> error_measures(std::span<Vec2d 
 /// NaN for no values.
 double quantile(std::vector<double> values, double fraction);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

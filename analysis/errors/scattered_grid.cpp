@@ -10,7 +10,7 @@
 #include "render/base/parallel.h"
 #include "render/base/point_cells.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 namespace {
 
 /// Weighted sums for the fit of a plane to scattered values, with offsets from the node in units of h.
@@ -101,4 +101,4 @@ DisplacementMaps map_scattered(std::span<Vec2d const> position_px, std::span<Vec
   return maps;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

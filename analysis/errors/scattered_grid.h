@@ -5,7 +5,7 @@
 #include "render/base/image.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 
 /// Nodes of a map: node (column, row) is at first + (column step, row step), with rows downwards [px].
 struct MapGrid {
@@ -31,4 +31,4 @@ struct DisplacementMaps {
 DisplacementMaps map_scattered(std::span<Vec2d const> position_px, std::span<Vec2d const> displacement_px,
                                MapGrid const& grid);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

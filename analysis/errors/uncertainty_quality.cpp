@@ -5,7 +5,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 namespace {
 
 /// Numbers of excluded vectors.
@@ -98,4 +98,4 @@ std::vector<std::pair<std::string_view, double>> quality_measures(UncertaintyQua
           {"sharpness_px", quality.sharpness_px}};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

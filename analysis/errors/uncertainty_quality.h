@@ -8,7 +8,7 @@
 
 #include "analysis/errors/error_summary.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 
 /// Agreement of estimated uncertainties with actual errors, both components pooled. Vectors with gross errors, which a
 /// standard uncertainty does not describe, are excluded, and their number is reported, whether or not they have an
@@ -48,4 +48,4 @@ std::vector<UncertaintyBin> uncertainty_bins(std::span<Vec2d const> measured, st
 /// Returns the numbers of a quality with their names in errors.json.
 std::vector<std::pair<std::string_view, double>> quality_measures(UncertaintyQuality const& quality);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

@@ -8,7 +8,7 @@
 #include "render/base/parallel.h"
 #include "render/base/point_cells.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 
 WindowWeight correlation_window(WindowWeighting weighting, double window_px) {
   GLADSTONE_EXPECTS(window_px > 0.0);
@@ -59,4 +59,4 @@ WindowTruth window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d co
   return truth;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

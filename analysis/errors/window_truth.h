@@ -8,7 +8,7 @@
 #include "analysis/correlation/window_ops.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline errors {
 
 /// Weight W(dx, dy) that a correlator applies to each image at a distance of (dx, dy) px from the window's centre. The
 /// weight is zero for |dx| or |dy| > half_width_px.
@@ -42,4 +42,4 @@ WindowTruth window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d co
                          std::span<double const> flux, std::span<Vec2d const> centres_px, WindowWeight const& weight,
                          TruthAt at = TruthAt::mid_position);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline errors

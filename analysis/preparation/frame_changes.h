@@ -9,7 +9,7 @@
 #include "render/base/vec.h"
 
 /// All masks and preprocessing steps. Each function returns the operation on the frames for its settings.
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 /// Masks the pixels whose centres are inside a polygon (even-odd rule).
 /// @param corners  corners of the polygon [px]
@@ -42,4 +42,4 @@ FrameChange make_intensity_cap(double deviations);
 /// (Westerweel, Digital Particle Image Velocimetry (1993), section 5).
 FrameChange make_min_max(int window_px, double least_contrast);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

@@ -6,7 +6,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 namespace {
 
 /// Replaces invalid pixels by the mean grey level of the valid ones.
@@ -48,4 +48,4 @@ double valid_pixel_fraction(StoredFrames const& frames) {
   return reference.empty() ? 0.0 : static_cast<double>(known) / static_cast<double>(reference.size());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

@@ -9,7 +9,7 @@
 #include "render/base/frame_pair.h"
 
 /// Preparation of frames before correlation: masks, and preprocessing steps that change grey levels.
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 /// Pair of frames during the preparation.
 struct PreparedFrames : FramePair<double> {
@@ -40,4 +40,4 @@ HostFrames prepare_frames(StoredFrames const& frames, FramePreparation const& pr
 /// Returns the fraction of pixels of the first frame (`reference`) that are not NaN [1].
 double valid_pixel_fraction(StoredFrames const& frames);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

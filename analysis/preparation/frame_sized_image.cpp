@@ -5,7 +5,7 @@
 #include "render/base/error.h"
 #include "render/files/image_file.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 Image<double> read_frame_sized_image(std::string const& file, Image<double> const& frame) {
   Image<double> picture = read_image(file);
@@ -22,4 +22,4 @@ Image<double> read_frame_sized_image(std::string const& file, Image<double> cons
   return picture;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

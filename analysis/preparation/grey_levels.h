@@ -4,7 +4,7 @@
 
 #include "analysis/preparation/frame_preparation.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 /// Returns a library's matrix of doubles, such as cv::Mat1d, as a view on an image; writing to it changes the image.
 template <class Matrix>
@@ -24,4 +24,4 @@ void for_both(PreparedFrames& frames, Change const& change) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 namespace {
 
 constexpr int blocks_across = 8;  // number of blocks along the image's shorter side
@@ -61,4 +61,4 @@ Image<double> estimate_background(Image<double> const& levels) {
   return background;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

@@ -4,7 +4,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 namespace {
 
 using ReadImage = std::function<std::optional<Image<double>>(std::size_t k)>;
@@ -82,4 +82,4 @@ Image<double> compute_background(std::string const& statistic, std::size_t count
   return compute_median(count, read);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

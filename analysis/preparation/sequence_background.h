@@ -8,7 +8,7 @@
 #include "render/base/image.h"
 
 /// Background images that are computed from many frames.
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 /// Background of a sequence's own frames. A "background" step without `frame` subtracts it from every pair; its images
 /// must be computed before the first pair is prepared.
@@ -30,4 +30,4 @@ std::vector<std::string> background_statistics();
 Image<double> compute_background(std::string const& statistic, std::size_t count,
                                  std::function<std::optional<Image<double>>(std::size_t k)> const& read);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

@@ -5,7 +5,7 @@
 #include "analysis/stereo/interpolated_field.h"
 #include "analysis/stereo/reconstruct.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 /// Bounding box of a camera's vectors projected onto the plane, and the mean distance between neighbouring vectors on
@@ -52,4 +52,4 @@ NodeGrid find_common_grid(CalibratedCamera const& camera_a, DisplacementField co
                            {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}, distance);
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 /// Returns the weights of the nodes at -1, 0, 1, 2 for a point at `t` between nodes 0 and 1, by cubic convolution
 /// (Keys, IEEE Trans. ASSP 29 (1981) 1153, with a = -1/2), which reproduces quadratic polynomials.
@@ -11,4 +11,4 @@ inline std::array<double, 4> cubic_weights(double t) {
           t * t * (-0.5 + 0.5 * t)};
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

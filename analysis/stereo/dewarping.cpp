@@ -7,7 +7,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 /// Interpolates an image. @return NaN at positions outside the image or less than two pixels inside its border
@@ -59,4 +59,4 @@ Image<double> dewarp_image(Image<double> const& image, PinholeCamera const& came
   return dewarped;
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

@@ -6,7 +6,7 @@
 #include "analysis/stereo/stereo_camera.h"
 #include "render/base/image.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 /// Plane onto which images are dewarped, and the pixels of the dewarped images.
 struct Dewarping {
@@ -29,4 +29,4 @@ NodeGrid find_common_view(std::array<PinholeCamera const*, 2> const& cameras,
 Image<double> dewarp_image(Image<double> const& image, PinholeCamera const& camera, ObjectPlane const& plane,
                            NodeGrid const& grid);
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 Vec2d find_spacing(DisplacementField const& field) {
@@ -121,4 +121,4 @@ std::optional<InterpolatedField::Vector> InterpolatedField::vector(Vec2d positio
   return result;
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

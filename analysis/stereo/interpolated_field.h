@@ -6,7 +6,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 /// Returns true if the vectors lie on a complete grid of at least 2 x 2 nodes with equal distances along each axis, in
 /// rows from the smallest y.
@@ -45,4 +45,4 @@ class InterpolatedField {
   double window_px_;
 };
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

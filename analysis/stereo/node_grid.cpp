@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 NodeGrid NodeGrid::between(Vec2d low, Vec2d high, double spacing) {
   constexpr double max_nodes = 1e5;
@@ -14,4 +14,4 @@ NodeGrid NodeGrid::between(Vec2d low, Vec2d high, double spacing) {
           spacing};
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

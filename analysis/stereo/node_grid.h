@@ -4,7 +4,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 /// Regular grid of nodes with z on the object plane, row by row from the smallest y.
 struct NodeGrid {
@@ -28,4 +28,4 @@ struct NodeGrid {
   Vec2d position_of_pixel(Vec2d pixel) const { return first + spacing * Vec2d{pixel.x, rows - 1 - pixel.y}; }
 };
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

@@ -9,7 +9,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 constexpr int parameter_count = static_cast<int>(PinholeCamera::count);
@@ -199,4 +199,4 @@ StereoField reconstruct(CalibratedCamera const& camera_a, DisplacementField cons
   return result;
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

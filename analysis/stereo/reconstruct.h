@@ -10,7 +10,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 struct StereoSettings {
   double spacing = 0.0;  ///< distance between nodes [m]; 0: mean distance between both cameras' vectors on the plane
@@ -68,4 +68,4 @@ NodeGrid find_common_grid(CalibratedCamera const& camera_a, DisplacementField co
                           CalibratedCamera const& camera_b, DisplacementField const& field_b, ObjectPlane const& plane,
                           double spacing, std::optional<Dewarping> const& dewarping = {});
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

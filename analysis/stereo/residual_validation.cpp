@@ -6,7 +6,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 constexpr double least_px = 0.1;
@@ -44,4 +44,4 @@ std::size_t count_rejected(StereoField const& field) {
   }));
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

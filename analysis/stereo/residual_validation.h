@@ -4,7 +4,7 @@
 
 #include "analysis/stereo/reconstruct.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 /// Sets the status of vectors to invalid if the two cameras disagree: a vector is invalid if the residual of the four
 /// equations, which have one degree of freedom, exceeds `limit` times the standard uncertainty of this residual.
@@ -21,4 +21,4 @@ StereoField reject_large_residuals(StereoField field, double limit);
 /// Returns the number of nodes whose vector is invalid.
 std::size_t count_rejected(StereoField const& field);
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

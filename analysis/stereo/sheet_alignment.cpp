@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 /// Least-squares plane, and the standard uncertainties of its parameters for a standard deviation of 1 m of the points'
@@ -201,4 +201,4 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
   return result;
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

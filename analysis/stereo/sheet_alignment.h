@@ -11,7 +11,7 @@
 #include "analysis/stereo/stereo_camera.h"
 #include "render/base/image.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 /// Images of the two cameras, recorded at the same time.
 using SimultaneousImages = std::array<Image<double>, 2>;
@@ -75,4 +75,4 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
                            std::vector<SimultaneousImages> const& images, ObjectPlane plane,
                            CorrelationSettings const& settings, int max_iterations = 8);
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 Eigen::Matrix3d find_rotation(PinholeCamera const& camera) {
@@ -75,4 +75,4 @@ double find_view_angle(PinholeCamera const& a, PinholeCamera const& b, Vec3d poi
   return std::acos(std::clamp(dot(to_a, to_b), -1.0, 1.0));
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

@@ -6,7 +6,7 @@
 #include "analysis/calibration/pinhole_fit.h"
 #include "render/base/vec.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 /// Pinhole camera with the covariance of its parameters.
 struct CalibratedCamera {
@@ -46,4 +46,4 @@ double find_pixel_size(PinholeCamera const& camera, ObjectPlane const& plane);
 /// Computes the angle between the directions from a point to both pinholes [rad].
 double find_view_angle(PinholeCamera const& a, PinholeCamera const& b, Vec3d point);
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

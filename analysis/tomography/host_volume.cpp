@@ -4,7 +4,7 @@
 #include "analysis/tomography/sart_volume.h"
 #include "analysis/tomography/total_variation.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 class HostVolume : public SartVolume {
@@ -92,4 +92,4 @@ std::unique_ptr<SartVolume> make_host_volume(SartProblem const& problem) {
   return std::make_unique<HostVolume>(problem);
 }
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -6,7 +6,7 @@
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 constexpr std::size_t lines_per_task = 256;
@@ -59,4 +59,4 @@ void LineProjector::back_project(std::span<double const> values, std::vector<Nod
   });
 }
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -6,7 +6,7 @@
 #include "analysis/tomography/line_samples.h"
 #include "render/base/regular_grid.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Projection A of a volume to its line integrals along the sight lines of one view, and the adjoint of A. The matrix A
 /// is not stored. Every sum has a fixed order, so that results do not depend on the number of threads.
@@ -34,4 +34,4 @@ class LineProjector {
   int slab_axis_;
 };
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -8,7 +8,7 @@
 #include "render/base/regular_grid.h"
 #include "render/base/vec.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Grid of a volume, passed by value. The volume is the trilinear interpolant from the first to the last node of each
 /// axis, and zero outside. The x index of the nodes varies fastest in memory.
@@ -190,4 +190,4 @@ GLADSTONE_HD void visit_node(VolumeShape const& shape, SightLine const& line, Li
   }
 }
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -7,7 +7,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 /// Optics for which compute_projected_gradient() returns (-u, v) on a grid in px: sensitivity and size of a pixel in
@@ -72,4 +72,4 @@ ProjectedView integrate_view(density::GradientMap const& gradient, ViewOptics co
   return view;
 }
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -8,7 +8,7 @@
 #include "analysis/tomography/volume_reconstruction.h"
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Sight line of a vector, and the distance in the target plane that corresponds to one pixel.
 struct VectorSight {
@@ -45,4 +45,4 @@ density::GradientMap compute_pixel_gradient(DisplacementField const& field, View
 ProjectedView integrate_view(density::GradientMap const& gradient, ViewOptics const& optics,
                              density::ReferenceDensity const& reference);
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -12,7 +12,7 @@
 #include "render/base/host_device.h"
 #include "render/base/regular_grid.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Lines of one view with the sums of their weights, and the line integrals that the iteration uses.
 struct SartView {
@@ -95,4 +95,4 @@ using SartVolumeMaker = std::function<std::unique_ptr<SartVolume>(SartProblem co
 /// Creates a volume on the CPU. Its results do not depend on the number of threads.
 std::unique_ptr<SartVolume> make_host_volume(SartProblem const& problem);
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -5,7 +5,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Straight line of sight through a volume, and the weight of the density along it.
 ///
@@ -27,4 +27,4 @@ struct SightLine {
   GLADSTONE_HD double weight(double s) const { return is_parallel() ? 1.0 : scale * s / (pupil_distance - s); }
 };
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

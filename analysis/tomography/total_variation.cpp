@@ -3,7 +3,7 @@
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 TotalVariation::TotalVariation(RegularGrid const& grid)
     : stencil_(TotalVariationStencil::of(grid)), dual_(grid.size()) {}
@@ -46,4 +46,4 @@ double TotalVariation::compute(std::vector<double> const& volume) const {
   return sum;
 }
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

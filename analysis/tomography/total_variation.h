@@ -5,7 +5,7 @@
 #include "analysis/tomography/total_variation_stencil.h"
 #include "render/base/regular_grid.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Total-variation denoising of a volume: minimises |x - g|^2 / 2 + lambda TV(x) by the dual projection of Chambolle,
 /// J. Math. Imaging Vis. 20 (2004) 89. TV(x) is the sum of the gradient's length over all nodes, computed by forward
@@ -30,4 +30,4 @@ class TotalVariation {
   std::vector<Vec3d> dual_;
 };
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

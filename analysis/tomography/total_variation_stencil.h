@@ -8,7 +8,7 @@
 #include "render/base/regular_grid.h"
 #include "render/base/vec.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Differences between neighbouring nodes of a volume, and the step of the dual iteration of Chambolle, J. Math.
 /// Imaging Vis. 20 (2004) 89, at one node. Passed by value. The x index of the nodes varies fastest in memory.
@@ -65,4 +65,4 @@ struct TotalVariationStencil {
   }
 };
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

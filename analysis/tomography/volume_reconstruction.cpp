@@ -13,7 +13,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/progress.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 // Memory per node: volume before and after a sweep, denoised volume, number of views, sums and dual variable.
@@ -197,4 +197,4 @@ double compute_relative_error(std::vector<double> const& value, std::vector<doub
   return std::sqrt(squares / norm);
 }
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

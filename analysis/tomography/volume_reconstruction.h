@@ -10,7 +10,7 @@
 #include "analysis/tomography/sight_line.h"
 #include "render/base/regular_grid.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Minimum number of views, which is also the minimum number of views that must see a common part of the volume.
 inline constexpr std::size_t least_views = 3;
@@ -107,4 +107,4 @@ std::vector<ContradictingView> find_contradicting_views(std::vector<double> cons
 /// Returns the relative L2 error over all nodes, |value - truth| / |truth| [1]; infinite if the truth is zero.
 double compute_relative_error(std::vector<double> const& value, std::vector<double> const& truth);
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

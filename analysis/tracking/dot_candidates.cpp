@@ -11,7 +11,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr double rounding_noise = 0.28867513459481288;  // noise of rounding to integers, 1 / sqrt(12) [grey levels]
@@ -143,4 +143,4 @@ std::vector<GaussianDot> find_dot_candidates(DotFrame const& frame, double sigma
   return found;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

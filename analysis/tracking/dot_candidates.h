@@ -5,7 +5,7 @@
 #include "analysis/tracking/gaussian_dot.h"
 #include "render/base/image.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Frame prepared for the detection of dots: levels above the background, with bright dots.
 struct DotFrame {
@@ -35,4 +35,4 @@ double estimate_dot_sigma(Image<double> const& above);
 ///         deviations of their images yield one common maximum
 std::vector<GaussianDot> find_dot_candidates(DotFrame const& frame, double sigma_px, double detection_threshold);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -8,7 +8,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr double smallest_variance = 0.02;  // lower bound of a dot's second moments [px^2]
@@ -284,4 +284,4 @@ DotFit fit_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> s
   return fit;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

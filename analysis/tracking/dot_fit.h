@@ -7,7 +7,7 @@
 
 #include "analysis/tracking/gaussian_dot.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Pixel of a joint fit.
 struct FitPixel {
@@ -57,4 +57,4 @@ struct DotFit {
 DotFit fit_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotShape shape,
                 DotPrior const& prior, double most_cost = std::numeric_limits<double>::infinity());
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -6,7 +6,7 @@
 
 #include "render/base/point_cells.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 /// Returns the connected components of dots closer than a distance, in the order of their first dots.
@@ -57,4 +57,4 @@ std::vector<std::vector<std::size_t>> group_dots(std::span<Vec2d const> centres,
   return done;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

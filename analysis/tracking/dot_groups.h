@@ -6,7 +6,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Largest number of dots that are fitted together.
 inline constexpr std::size_t largest_group = 8;
@@ -19,4 +19,4 @@ inline constexpr std::size_t largest_group = 8;
 /// @return indices of the dots of each group; each dot is in exactly one group
 std::vector<std::vector<std::size_t>> group_dots(std::span<Vec2d const> centres, double distance_px);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -18,7 +18,7 @@
 #include "render/base/point_cells.h"
 #include "render/base/units.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr std::array<int, 4> additions_per_sweep{0, 4, 4, 0};  // largest number of dots added to a group in each sweep
@@ -369,4 +369,4 @@ LocatedDots locate_dots_near(Image<double> const& frame, DotSettings const& sett
   return FrameFit(frame, settings, places).run();
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

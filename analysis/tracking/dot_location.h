@@ -7,7 +7,7 @@
 #include "analysis/tracking/gaussian_dot.h"
 #include "render/base/image.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Dot measured in a frame.
 struct LocatedDot {
@@ -65,4 +65,4 @@ LocatedDots locate_dots(Image<double> const& frame, DotSettings const& settings)
 /// @return located dots, as returned by locate_dots(); none for a place at which no dot is significant
 LocatedDots locate_dots_near(Image<double> const& frame, DotSettings const& settings, std::span<Vec2d const> places);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -10,7 +10,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr std::size_t supporters = 12;  // number of neighbours that may support a displacement
@@ -222,4 +222,4 @@ std::vector<DotMatch> match_dots(std::span<Vec2d const> a, std::span<Vec2d const
   return DotMatcher(a, b, settings, neighbours).run(prediction);
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

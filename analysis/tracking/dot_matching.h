@@ -9,7 +9,7 @@
 #include "analysis/tracking/outlier_test.h"
 #include "analysis/tracking/track_evidence.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Result of the search for the partner of a dot.
 enum class MatchStatus {
@@ -74,4 +74,4 @@ struct MatchSettings {
 std::vector<DotMatch> match_dots(std::span<Vec2d const> a, std::span<Vec2d const> b, std::span<Vec2d const> prediction,
                                  MatchSettings const& settings = {}, TrackNeighbours const& neighbours = {});
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -6,7 +6,7 @@
 
 #include "render/base/median.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr int size = static_cast<int>(DotProfile::count);
@@ -103,4 +103,4 @@ FittedProfile fit_dot_profile(std::span<std::vector<ProfileSample> const> dots) 
   return fitted;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

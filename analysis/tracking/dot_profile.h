@@ -6,7 +6,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Radial profile of the round dot images of a frame: a sum of concentric Gaussians whose variances are fixed fractions
 /// of the variance of the dot (multi-Gaussian expansion: Emsellem, Monnet & Bacon, Astron. Astrophys. 285 (1994) 723).
@@ -46,4 +46,4 @@ struct FittedProfile {
 ///         a probability of 1e-4
 FittedProfile fit_dot_profile(std::span<std::vector<ProfileSample> const> dots);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Contrast of the dots against their background.
 enum class DotPolarity { automatic, bright, dark };
@@ -17,4 +17,4 @@ struct DotSettings {
   double detection_threshold = 5;  ///< minimum height of a dot after filtering, in standard deviations of the noise [1]
 };
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -13,7 +13,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/point_cells.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 std::vector<Vec2d> dot_centres(LocatedDots const& located) {
   std::vector<Vec2d> centres;
@@ -141,4 +141,4 @@ DisplacementField track_dots(TrackFrames const& frames, DisplacementField const&
                settings, located);
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -6,7 +6,7 @@
 #include "analysis/tracking/track_frames.h"
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Settings of track_dots().
 struct TrackingSettings {
@@ -52,4 +52,4 @@ DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, st
 /// Returns the centres of located dots [px].
 std::vector<Vec2d> dot_centres(LocatedDots const& located);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -13,7 +13,7 @@
 #include "analysis/tracking/dot_settings.h"
 #include "render/base/vec.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Image of a dot: a Gaussian, or a round DotProfile. The second moments are those of the irradiance of the widest
 /// Gaussian, before the integration over pixels.
@@ -164,4 +164,4 @@ class DotLight {
   std::vector<Factor> factors_;  // factors of each Gaussian: those of the columns, then those of the rows
 };
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -11,7 +11,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr std::size_t local_count = 8;  // number of vectors that determine the local spacing
@@ -112,4 +112,4 @@ DisplacementField interpolate_vectors(DisplacementField const& vectors, std::spa
   return result;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

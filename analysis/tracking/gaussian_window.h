@@ -4,7 +4,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Order of the polynomial that is fitted under the window. The weighted mean is biased by a gradient where the vectors
 /// are not symmetric about the point; the plane reproduces linear fields. For a front of the displacement (tanh) with a
@@ -35,4 +35,4 @@ struct GaussianWindow {
 DisplacementField interpolate_vectors(DisplacementField const& vectors, std::span<Vec2d const> points,
                                       GaussianWindow const& window = {});
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -5,7 +5,7 @@
 #include <exception>
 #include <utility>
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 /// Returns whether all levels of two images are equal, bit by bit, so that ignored pixels (NaN) are equal as well.
@@ -58,4 +58,4 @@ void LocatedFrames::remove(std::shared_ptr<Entry> const& entry) const {
   entries_.remove(entry);
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -12,7 +12,7 @@
 #include "analysis/tracking/dot_location.h"
 #include "render/base/image.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Locates the dots of frames and stores the results of the last frames, so that a frame that belongs to several pairs
 /// of a sequence is processed only once. Two frames are the same if all their grey levels are equal. Several threads
@@ -49,4 +49,4 @@ class LocatedFrames {
   mutable std::list<std::shared_ptr<Entry>> entries_;  ///< stored frames, the most recently used one first
 };
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

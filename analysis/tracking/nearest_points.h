@@ -10,7 +10,7 @@
 
 #include "render/base/point_cells.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Search for the nearest of a set of points. The points are not copied and must outlive the object.
 class NearestPoints {
@@ -79,4 +79,4 @@ class NearestPoints {
   PointCells cells_;
 };
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

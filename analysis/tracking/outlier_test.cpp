@@ -6,7 +6,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 std::vector<char> find_outliers(std::span<Vec2d const> positions, std::span<Vec2d const> values,
                                 OutlierTest const& test) {
@@ -29,4 +29,4 @@ std::vector<char> find_outliers(std::span<Vec2d const> positions, std::span<Vec2
   return outlier;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -5,7 +5,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Criterion of find_outliers().
 struct OutlierTest {
@@ -23,4 +23,4 @@ struct OutlierTest {
 std::vector<char> find_outliers(std::span<Vec2d const> positions, std::span<Vec2d const> values,
                                 OutlierTest const& test = {});
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

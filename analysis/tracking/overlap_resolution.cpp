@@ -8,7 +8,7 @@
 #include "render/base/image.h"
 #include "render/base/units.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr double least_decrease = 25;   // smallest decrease of the sum of squares for which a dot is added
@@ -168,4 +168,4 @@ DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<Gaussian
   return model.mismatch > 0 ? plain_fit(pixels, best.dots, model) : best;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -2,7 +2,7 @@
 
 #include "analysis/tracking/dot_fit.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Smallest distance between two dots, in standard deviations of their images; closer dots are treated as one dot.
 inline constexpr double closest_over_sigma = 0.35;
@@ -25,4 +25,4 @@ struct DotModel {
 DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model,
                             int most_additions);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -8,7 +8,7 @@
 #include "render/base/median.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr double pooled_freedom = 20;  // weight of the median misfit of all dots, in degrees of freedom
@@ -109,4 +109,4 @@ std::vector<Vec2d> displacement_sigmas(LocatedDots const& a, LocatedDots const& 
   return sigmas;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -6,7 +6,7 @@
 #include "analysis/tracking/dot_location.h"
 #include "analysis/tracking/dot_matching.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Estimates the standard uncertainty of the displacement of each dot between two frames [px].
 ///
@@ -20,4 +20,4 @@ namespace gladstone::tracking {
 /// @return standard uncertainty of each dot of a; NaN for dots without a partner
 std::vector<Vec2d> displacement_sigmas(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -7,7 +7,7 @@
 
 #include "render/base/median.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr std::size_t least_samples = 200;
@@ -79,4 +79,4 @@ double estimate_conversion_gain(std::vector<ResidualSample> const& samples, doub
   return gain;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

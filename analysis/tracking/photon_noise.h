@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Residual of a pixel after the fit of an isolated dot.
 struct ResidualSample {
@@ -25,4 +25,4 @@ struct ResidualSample {
 ///         a subset at equal intervals is used
 double estimate_conversion_gain(std::vector<ResidualSample> const& samples, double background_noise);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 TrackEvidence::TrackEvidence(TrackNeighbours const& neighbours, double velocity_change_px, double tolerance_px)
     : neighbours_(neighbours),
@@ -33,4 +33,4 @@ double TrackEvidence::misfit(Vec2d place, Vec2d displacement) const {
   return least;
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -4,7 +4,7 @@
 
 #include "analysis/tracking/nearest_points.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Centres of the particles in the frame before frame A and in the frame after frame B of a sequence with equal
 /// intervals of time [px]; empty: no such frame.
@@ -41,4 +41,4 @@ class TrackEvidence {
   double velocity_change_, tolerance_;
 };
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -6,7 +6,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/frame_pair.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Pair of frames of a sequence with equal intervals of time, with the frames before and after it, for particle tracks
 /// over up to four frames.
@@ -29,4 +29,4 @@ class TrackFrames final : public StoredFrames {
   DisplacementField* dots_;
 };
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

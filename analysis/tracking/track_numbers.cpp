@@ -4,7 +4,7 @@
 
 #include "analysis/tracking/nearest_points.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr double same_place = 0.1;  // distance below which two positions belong to the same dot [px]
@@ -37,4 +37,4 @@ void TrackNumbers::end_tracks() {
   numbers_.clear();
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

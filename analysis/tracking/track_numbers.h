@@ -5,7 +5,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Numbers the tracks of dots and particles through the pairs of a sequence.
 class TrackNumbers {
@@ -32,4 +32,4 @@ class TrackNumbers {
   std::vector<std::int64_t> numbers_;
 };
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -11,7 +11,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr Vec2d unknown{not_a_number, not_a_number};
@@ -142,4 +142,4 @@ std::unique_ptr<Correlator> make_cpu_correlator(CorrelationSettings const& setti
                                                          : make_correlator(settings);
 }
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

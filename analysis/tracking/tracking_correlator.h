@@ -4,7 +4,7 @@
 
 #include "analysis/correlation/correlator.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 
 /// Creates a correlator whose vectors are the displacements of tracked dots.
 ///
@@ -24,4 +24,4 @@ std::unique_ptr<Correlator> make_tracking_correlator(CorrelationSettings const& 
 /// @pre settings.method is one of correlation_methods()
 std::unique_ptr<Correlator> make_cpu_correlator(CorrelationSettings const& settings);
 
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

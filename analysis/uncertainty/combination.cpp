@@ -9,7 +9,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 /// Returns the negative log-likelihood sum ln sigma + e^2/(2 sigma^2), and optionally its derivatives.
@@ -101,4 +101,4 @@ UncertaintyCombination fit_combination(std::span<UncertaintySample const> sample
   return combination;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -8,7 +8,7 @@
 #include "render/base/vec.h"
 
 /// Combination of several uncertainty estimates into one, calibrated with known errors.
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 
 /// Log-linear combination of uncertainty estimates: ln sigma = constant + sum over all methods of weight times ln sigma
 /// of the method, sigma in px. Rajendran, Bhattacharya, Bane & Vlachos, Meas. Sci. Technol. 32 (2021) 104002, also use
@@ -53,4 +53,4 @@ UncertaintyCombination fit_combination(std::span<UncertaintySample const> sample
 /// Returns a header and "term,coefficient" lines in the format of parse_combination().
 std::string combination_text(UncertaintyCombination const& combination);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -7,7 +7,7 @@
 #include "analysis/uncertainty/window_statistics.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 constexpr std::size_t windows_per_piece = 64;
@@ -81,4 +81,4 @@ std::vector<Vec2d> correlation_statistics(UncertaintyInput const& input) {
   return sigma_of_variances(u, v, input.grid);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

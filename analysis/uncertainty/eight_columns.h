@@ -2,7 +2,7 @@
 
 #include "analysis/correlation/float_lanes.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 
 /// Access policy of WindowStatistics for eight columns at a time.
 struct EightColumns {
@@ -17,4 +17,4 @@ struct EightColumns {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -4,7 +4,7 @@
 #include "analysis/uncertainty/particle_pairs.h"
 #include "analysis/uncertainty/pass_amplification.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 /// Minimum degrees of freedom (dots minus one), averaged over a window and its neighbours, required for an estimate of
@@ -45,4 +45,4 @@ std::vector<Vec2d> image_matching(UncertaintyInput const& input) {
   return sigma;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -7,7 +7,7 @@
 #include "analysis/uncertainty/neighbour_mean.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 constexpr std::size_t matches_per_piece = 64;
@@ -102,4 +102,4 @@ std::vector<Vec2d> sigma_of_variances(std::vector<double> const& u, std::vector<
   return sigma;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

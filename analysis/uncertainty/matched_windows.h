@@ -5,7 +5,7 @@
 
 #include "analysis/uncertainty/uncertainty.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 
 /// Size and weights common to the windows of the last pass.
 struct WindowShape {
@@ -40,4 +40,4 @@ std::vector<double> averaged_over_neighbours(std::vector<double> const& values, 
 std::vector<Vec2d> sigma_of_variances(std::vector<double> const& u, std::vector<double> const& v,
                                       InterrogationGrid const& grid);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -6,7 +6,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/uncertainty/particle_pairs.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 /// Empirical factor, fitted to the errors of the default passes for dots of 3 px at 5 % noise. Bhattacharya et al. use
@@ -60,4 +60,4 @@ std::vector<Vec2d> moment_of_correlation(UncertaintyInput const& input) {
   return sigma;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -2,7 +2,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 
 /// Returns the mean of the known values in the 3 x 3 neighbourhood of a grid position. Averaging reduces the scatter of
 /// variances that are estimated from a few particles.
@@ -23,4 +23,4 @@ GLADSTONE_HD double mean_of_neighbours(int column, int row, int columns, int row
   return sum / count;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 /// Half width of the square of pixels around a dot's maximum in which the frames are compared [px]: covers dots of up
@@ -116,4 +116,4 @@ double effective_number(std::vector<ParticleImagePair> const& pairs) {
   return squares > 0.0 ? sum * sum / squares : 0.0;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -4,7 +4,7 @@
 
 #include "analysis/uncertainty/matched_windows.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 
 /// Dot that is visible in both matched frames.
 struct ParticleImagePair {
@@ -27,4 +27,4 @@ void remove_mismatched_pairs(std::vector<ParticleImagePair>& pairs);
 /// Returns the equivalent number of dots with equal weights c: (sum c)^2 / sum c^2.
 double effective_number(std::vector<ParticleImagePair> const& pairs);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

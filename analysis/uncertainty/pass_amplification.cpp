@@ -8,7 +8,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 constexpr int frequencies = 96;
@@ -69,4 +69,4 @@ double amplification_of_passes(CorrelationSettings const& settings) {
   return std::sqrt(all / alone);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

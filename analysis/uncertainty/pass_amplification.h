@@ -2,7 +2,7 @@
 
 #include "analysis/correlation/correlation_settings.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 
 /// Returns the ratio of a vector's random error after all passes to that of a single pass with the last windows; 1 for
 /// a single pass and for optical flow.
@@ -14,4 +14,4 @@ namespace gladstone {
 /// at the predictor's nodes is neglected.
 double amplification_of_passes(CorrelationSettings const& settings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

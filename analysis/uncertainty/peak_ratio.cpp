@@ -2,7 +2,7 @@
 
 #include "analysis/uncertainty/uncertainty.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 // Fitted to the errors of the default passes for dots of 3 px at 5 % noise; docs/estimators.md reports how well it
@@ -24,4 +24,4 @@ std::vector<Vec2d> peak_ratio_uncertainty(UncertaintyInput const& input) {
   return sigma;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

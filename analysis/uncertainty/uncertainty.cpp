@@ -14,7 +14,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 namespace {
 
 struct NamedUncertainty {
@@ -155,4 +155,4 @@ void complete_uncertainty(DisplacementField& field, StoredFrames const& frames, 
   if (field.sigma_px.empty() || left_out) estimate_uncertainty(field, frames, settings);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -10,7 +10,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/frame_pair.h"
 
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 
 /// Input of an uncertainty estimate.
 struct UncertaintyInput {
@@ -87,4 +87,4 @@ void estimate_uncertainty(DisplacementField& field, StoredFrames const& frames, 
 /// invalidated vectors must not affect the deformation of the frames.
 void complete_uncertainty(DisplacementField& field, StoredFrames const& frames, CorrelationSettings const& settings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

@@ -10,7 +10,7 @@
 /// Sums over one window of matched frames for the displacement variance by correlation statistics. They are computed by
 /// cooperating threads: one thread with eight pixel columns at a time on the CPU, threads of a block with one column
 /// each in CUDA.
-namespace gladstone {
+namespace gladstone::inline uncertainty {
 
 /// Access policy of WindowStatistics for one column at a time.
 struct OneColumn {
@@ -283,4 +283,4 @@ GLADSTONE_HD inline double displacement_variance(StatisticsSums const& sums, int
   return variance > largest_variance ? largest_variance : variance;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline uncertainty

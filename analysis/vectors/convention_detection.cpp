@@ -9,15 +9,12 @@
 #include "analysis/vectors/convention_report.h"
 #include "analysis/vectors/scale_and_shift.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
 
 using Exchange = VectorConventions::Exchange;
 using Mirror = VectorConventions::Mirror;
 using Verdict = DetectedConventions::Verdict;
-using detail::fit_within;
-using detail::same_axes;
-using detail::Truth;
 
 /// Returns all candidate conventions. The format's own conventions come first, so that they are selected among equally
 /// good ones.
@@ -96,7 +93,7 @@ ConventionFit likeliest(std::vector<ConventionFit> const& fits, std::vector<Vect
   ConventionFit const best = *std::min_element(fits.begin(), fits.end(), better);
   return *std::min_element(fits.begin(), fits.end(), [&](ConventionFit const& a, ConventionFit const& b) {
     auto const rank = [&](ConventionFit const& fit) {
-      return fits_as_well(fit, best) ? detail::convention_penalty(fit.conventions, own)
+      return fits_as_well(fit, best) ? convention_penalty(fit.conventions, own)
                                      : std::numeric_limits<double>::infinity();
     };
     return rank(a) < rank(b);
@@ -114,15 +111,15 @@ bool is_too_fine_for_windows(DisplacementField const& ours, Truth const& truth) 
       std::minmax_element(places.begin(), places.end(), [](Vec2d a, Vec2d b) { return a.y < b.y; });
   double const spacing = std::sqrt((right->x - left->x) * (bottom->y - top->y) / static_cast<double>(ours.size()));
   constexpr double least_followed = 0.2;
-  Vec2d const share = detail::share_in_windows(ours, truth, std::clamp(4.0 * spacing, 16.0, 64.0));
+  Vec2d const share = share_in_windows(ours, truth, std::clamp(4.0 * spacing, 16.0, 64.0));
   return std::max(share.x, share.y) < least_followed;
 }
 
 DetectedConventions detect_conventions(VectorFile const& file, Truth const& truth, int image_rows) {
-  DisplacementField const few = detail::sample(file.field, 4000);
+  DisplacementField const few = sample(file.field, 4000);
   std::vector<VectorConventions> own = file.also;
   own.insert(own.begin(), file.conventions);
-  double const most = detail::largest_difference(few, own.front(), truth, image_rows);
+  double const most = largest_difference(few, own.front(), truth, image_rows);
   std::vector<ConventionFit> fits;
   for (VectorConventions const& choice : every_choice(own))
     fits.push_back(fit_within(few, choice, truth, image_rows, most));
@@ -139,7 +136,7 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   result.verdict = judge(*std::min_element(fits.begin(), fits.end(), better));
   result.tried = best_of_axes(fits);
   result.best = likeliest(fits, own);
-  if (result.verdict == Verdict::no_convention_fits && !detail::is_zero(few) &&
+  if (result.verdict == Verdict::no_convention_fits && !is_zero(few) &&
       is_too_fine_for_windows(apply_conventions(file.field, chosen.conventions, image_rows), truth))
     result.verdict = Verdict::cannot_be_told;
   if (result.verdict == Verdict::cannot_be_told) chosen = fits.front();
@@ -156,15 +153,13 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
     // add other mistakes that this displacement does not distinguish from the first one
     for (ConventionFit const& other : result.tried) {
       if (same_axes(other.conventions, result.best.conventions) || !fits_as_well(other, result.best)) continue;
-      if (detail::convention_penalty(other.conventions, own) >
-          detail::convention_penalty(result.best.conventions, own) + 0.5)
-        continue;
+      if (convention_penalty(other.conventions, own) > convention_penalty(result.best.conventions, own) + 0.5) continue;
       result.mistake.text += ", or " + describe_difference(other.conventions, chosen.conventions);
     }
   }
   if (result.verdict != Verdict::cannot_be_told) {
-    ProbableMistake other = detail::find_scale_or_shift({few, truth, image_rows, most, chosen}, fits, own,
-                                                        result.verdict == Verdict::no_convention_fits);
+    ProbableMistake other = find_scale_or_shift({few, truth, image_rows, most, chosen}, fits, own,
+                                                result.verdict == Verdict::no_convention_fits);
     if (other.found() &&
         (!result.mistake.found() || other.corrected_fit.spread_px < 0.9 * result.mistake.corrected_fit.spread_px))
       result.mistake = std::move(other);
@@ -181,9 +176,9 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   VectorConventions without = chosen.conventions;
   without.offset_px = 0.0;
   result.without_offset = fit_within(few, without, truth, image_rows, most);
-  result.report = result.verdict == Verdict::no_convention_fits ? detail::misfit_report(file, result)
-                                                                : detail::found_report(file, result);
+  result.report =
+      result.verdict == Verdict::no_convention_fits ? misfit_report(file, result) : found_report(file, result);
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -7,7 +7,7 @@
 
 #include "analysis/vectors/vector_file.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Agreement of vectors, interpreted by given conventions, with the true displacement.
 struct ConventionFit {
@@ -115,4 +115,4 @@ std::string offset_report(DetectedConventions const& detected);
 /// quarter of the components is assumed to be independent. Spreads below 1e-4 px count as equal.
 double log_likelihood_statistic(ConventionFit const& a, ConventionFit const& b);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -7,9 +7,7 @@
 
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
-namespace detail {
-
+namespace gladstone::inline vectors {
 bool same_axes(VectorConventions const& a, VectorConventions const& b) {
   return a.y_up == b.y_up && a.v_up == b.v_up && a.swapped == b.swapped && a.exchange == b.exchange;
 }
@@ -112,8 +110,6 @@ double convention_penalty(VectorConventions const& reading, std::vector<VectorCo
   return least;
 }
 
-}  // namespace detail
-
 double convention_penalty(VectorConventions const& reading, VectorConventions const& own) {
   bool const y = reading.y_up != own.y_up, v = reading.v_up != own.v_up;
   return (y && v ? 1.1 : (y ? 1.0 : 0.0) + (v ? 1.0 : 0.0)) + (reading.swapped != own.swapped ? 1.0 : 0.0) +
@@ -127,4 +123,4 @@ double log_likelihood_statistic(ConventionFit const& a, ConventionFit const& b) 
   return independent * 2.0 * std::log(std::max(b.spread_px, alike_px) / std::max(a.spread_px, alike_px));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -6,7 +6,7 @@
 
 #include "analysis/vectors/convention_detection.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Displacement at a position in our conventions [px]; NaN outside of the field of view.
 using Truth = std::function<Vec2d(Vec2d)>;
@@ -38,4 +38,4 @@ double largest_difference(DisplacementField const& field, VectorConventions cons
 /// Returns the smallest convention_penalty() of an interpretation relative to any of the format's own conventions.
 double convention_penalty(VectorConventions const& reading, std::vector<VectorConventions> const& own);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

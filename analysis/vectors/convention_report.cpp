@@ -9,7 +9,7 @@
 #include "analysis/vectors/convention_fit.h"
 #include "analysis/vectors/scale_and_shift.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
 
 using Exchange = VectorConventions::Exchange;
@@ -18,15 +18,13 @@ using Verdict = DetectedConventions::Verdict;
 
 /// Returns the probable cause of vectors that no conventions fit.
 std::string likely_cause(DisplacementField const& field, ConventionFit const& best) {
-  if (detail::is_zero(field)) return "all displacements are 0; the vectors were probably not computed";
+  if (is_zero(field)) return "all displacements are 0; the vectors were probably not computed";
   if (std::abs(best.slope) < 0.1)
     return "positions with another origin, or positions or displacements that are not in px, have this effect";
   return "positions with another origin have this effect";
 }
 
 }  // namespace
-
-namespace detail {
 
 std::string misfit_report(VectorFile const& file, DetectedConventions const& detected) {
   ConventionFit const& best = detected.tried.front();
@@ -84,8 +82,6 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
   return report;
 }
 
-}  // namespace detail
-
 std::string describe_difference(VectorConventions const& reading, VectorConventions const& own) {
   std::vector<std::string> parts;
   bool const y = reading.y_up != own.y_up, v = reading.v_up != own.v_up, frames = reading.swapped != own.swapped;
@@ -140,4 +136,4 @@ std::string offset_report(DetectedConventions const& detected) {
                      moved, with, without);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

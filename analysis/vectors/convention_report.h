@@ -4,7 +4,7 @@
 
 #include "analysis/vectors/convention_detection.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Returns the report for vectors that no convention fits: the tried interpretations and the probable cause.
 std::string misfit_report(VectorFile const& file, DetectedConventions const& detected);
@@ -12,4 +12,4 @@ std::string misfit_report(VectorFile const& file, DetectedConventions const& det
 /// Returns one line about the conventions in use, their fit, and the best other interpretation.
 std::string found_report(VectorFile const& file, DetectedConventions const& detected);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

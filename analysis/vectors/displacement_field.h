@@ -8,7 +8,7 @@
 #include "render/base/vec.h"
 #include "render/base/warning.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Validity of a measured vector. The values are stored in vectors.h5 and vectors.csv.
 enum class VectorStatus : int { valid = 0, replaced = 1, masked = 2, invalid = 3 };
@@ -77,4 +77,4 @@ struct DisplacementField {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -11,11 +11,8 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_axes.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
-
-using detail::VectorColumn;
-using detail::VectorTable;
 
 std::vector<std::size_t> shape_of(GridTable const& table) {
   std::vector<std::size_t> shape;
@@ -37,7 +34,7 @@ VectorTable with_positions(GridTable const& grid) {
     TableAxis const& axis = grid.axes[k];
     std::vector<double> places(grid.nodes());
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = axis.place_mm[i / stride % shape[k]];
-    table.columns.push_back(detail::number_column(axis.name + "_mm", "mm", axis.description, std::move(places)));
+    table.columns.push_back(number_column(axis.name + "_mm", "mm", axis.description, std::move(places)));
     stride *= shape[k];
   }
   table.columns.insert(table.columns.end(), grid.columns.begin(), grid.columns.end());
@@ -92,17 +89,17 @@ struct GridWriter {
 };
 constexpr std::array grid_writers{
     GridWriter{".csv", [](auto const& path, auto const& grid,
-                          auto const& origin) { detail::write_csv_table(path, with_positions(grid), origin); }},
+                          auto const& origin) { write_csv_table(path, with_positions(grid), origin); }},
     GridWriter{".nc", write_netcdf},
     GridWriter{".mat", [](auto const& path, auto const& grid,
-                          auto const& origin) { detail::write_matlab_table(path, with_positions(grid), origin); }},
+                          auto const& origin) { write_matlab_table(path, with_positions(grid), origin); }},
     GridWriter{".vti",
                [](auto const& path, auto const& grid, auto const& origin) {
                  std::array<std::vector<double>, 3> places{std::vector<double>{0}, {0}, {0}};
                  for (std::size_t k = 0; k < grid.axes.size(); ++k) {
                    places[k] = grid.axes[grid.axes.size() - 1 - k].place_mm;
                  }
-                 detail::write_vti_scalars(path, grid.columns, places, "mm, y upwards", origin);
+                 write_vti_scalars(path, grid.columns, places, "mm, y upwards", origin);
                }},
 };
 
@@ -130,4 +127,4 @@ void write_grid_table(std::string const& path, GridTable const& table, FileOrigi
   writer->write(path, table, origin);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -6,7 +6,7 @@
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "render/files/hdf5_file.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Coordinates of a uniform axis of a grid.
 struct TableAxis {
@@ -20,7 +20,7 @@ struct GridTable {
   /// Axes in the order y, x or z, y, x: the index of the last axis varies fastest.
   std::vector<TableAxis> axes;
   /// Quantities, with one value per node; the x index varies fastest; NaN: unknown.
-  std::vector<detail::VectorColumn> columns;
+  std::vector<VectorColumn> columns;
 
   std::size_t nodes() const;
 };
@@ -34,4 +34,4 @@ std::vector<std::string> grid_table_extensions();
 /// @throws OutputError, also for another extension; DataError if a source has changed since it was read
 void write_grid_table(std::string const& path, GridTable const& table, FileOrigin const& origin);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

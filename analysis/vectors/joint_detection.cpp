@@ -7,10 +7,9 @@
 #include "analysis/vectors/convention_fit.h"
 #include "analysis/vectors/scale_and_shift.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
 
-using detail::same_axes;
 using Verdict = DetectedConventions::Verdict;
 
 /// Sample of one file's vectors, and the fit of the conventions in use to this sample.
@@ -21,7 +20,7 @@ struct Sample {
   ConventionFit as_read;
 
   ConventionFit fit(VectorConventions const& conventions, VectorCorrection const& correction = {}) const {
-    return detail::fit_within(detail::corrected(few, correction), conventions, of->truth, of->image_rows, most);
+    return fit_within(corrected(few, correction), conventions, of->truth, of->image_rows, most);
   }
 };
 
@@ -121,8 +120,7 @@ std::vector<Candidate> corrections(std::vector<DetectedConventions> const& detec
 }
 
 double candidate_penalty(Candidate const& candidate, std::vector<VectorConventions> const& own) {
-  return (candidate.corrects() ? 1.5 : 0.0) +
-         detail::convention_penalty(candidate.mistake.corrected_fit.conventions, own);
+  return (candidate.corrects() ? 1.5 : 0.0) + convention_penalty(candidate.mistake.corrected_fit.conventions, own);
 }
 
 /// Returns true if two candidates are the same mistake: they have the same axes and signs, and neither or both have a
@@ -164,8 +162,8 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
   std::vector<Sample> samples;
   for (VectorsWithTruth const& one : files) {
     result.detected.push_back(detect_conventions(one.file, one.truth, one.image_rows));
-    DisplacementField few = detail::sample(one.file.field, 4000);  // same number of vectors as in detect_conventions()
-    double const most = detail::largest_difference(few, own.front(), one.truth, one.image_rows);
+    DisplacementField few = sample(one.file.field, 4000);  // same number of vectors as in detect_conventions()
+    double const most = largest_difference(few, own.front(), one.truth, one.image_rows);
     samples.push_back({&one, std::move(few), most, {}});
     samples.back().as_read = samples.back().fit(own.front());
   }
@@ -203,4 +201,4 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

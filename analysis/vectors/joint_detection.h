@@ -6,7 +6,7 @@
 
 #include "analysis/vectors/convention_detection.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Vectors that a program wrote for one image pair, and the pair's true displacement.
 struct VectorsWithTruth {
@@ -46,4 +46,4 @@ struct CommonConventions {
 /// @pre there is at least one file
 CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const& files);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

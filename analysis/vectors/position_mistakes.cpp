@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 VectorCorrection shift_by(Vec2d shift_px) {
@@ -147,4 +147,4 @@ ProbableMistake find_place_factor(Search const& search) {
           corrected_fit, search.own, scaled(best)};
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

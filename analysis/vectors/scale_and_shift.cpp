@@ -10,7 +10,7 @@
 
 #include "analysis/vectors/position_mistakes.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Returns the factor between a component and its truth by least absolute deviations: the median of their ratios,
@@ -191,4 +191,4 @@ ProbableMistake find_scale_or_shift(Search search, std::vector<ConventionFit> co
   return best;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -4,7 +4,7 @@
 
 #include "analysis/vectors/convention_fit.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Applies a correction to the vectors of a file.
 DisplacementField corrected(DisplacementField field, VectorCorrection const& correction);
@@ -43,4 +43,4 @@ struct Search {
 ProbableMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
                                     std::vector<VectorConventions> const& own, bool any_reading);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -8,7 +8,7 @@
 #include "render/base/parallel.h"
 #include "render/files/hdf5_axes.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
 
 constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;  // maximum memory of the autocorrelation [bytes]
@@ -285,4 +285,4 @@ void write_sequence_statistics(std::string const& path, SequenceMoments const& m
   file.close();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

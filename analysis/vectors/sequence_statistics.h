@@ -10,7 +10,7 @@
 #include "render/base/vec.h"
 #include "render/files/hdf5_file.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Reynolds stresses of the displacement, the central second moments [px^2]: with n - 1 in the denominator.
 struct ReynoldsStress {
@@ -121,4 +121,4 @@ class SequenceStatistics {
 /// Writes statistics.h5. @throws OutputError
 void write_sequence_statistics(std::string const& path, SequenceMoments const& moments, FileOrigin const& origin);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

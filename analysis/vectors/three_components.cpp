@@ -6,7 +6,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
 
 constexpr char const* stereo_filetype = "gladstone stereo";
@@ -69,4 +69,4 @@ ThreeComponentField read_three_components(std::string const& path) {
   return field;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -8,7 +8,7 @@
 #include "render/base/vec.h"
 #include "render/files/hdf5_file.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Displacements in three components at the nodes of a grid on a laser sheet, as gladstone stereo writes them. Axes are
 /// those of the world, lengths are in mm; NaN: not determined.
@@ -40,4 +40,4 @@ std::vector<std::string> three_component_extensions();
 ///         std::invalid_argument for another file extension
 void write_three_components(std::string const& path, ThreeComponentField const& field, FileOrigin const& origin);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -8,7 +8,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/files/hdf5_file.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Writes the scattered vectors of dots or particles in the format of vectors.h5, with a dataset `track`.
 /// @param tracks  number of the track of each vector; empty: no tracks, and no such dataset
@@ -24,4 +24,4 @@ struct TrackVectors {
 /// Reads a file of write_track_vectors(). @throws DataError if it is another file
 TrackVectors read_track_vectors(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

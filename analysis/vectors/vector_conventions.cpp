@@ -10,7 +10,7 @@
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
 
 using Exchange = VectorConventions::Exchange;
@@ -176,4 +176,4 @@ DisplacementField apply_conventions(DisplacementField field, VectorConventions c
   return field;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

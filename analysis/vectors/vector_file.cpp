@@ -10,24 +10,24 @@
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Reader of a text format. Readers are tried in order; the last one accepts every table. A new format requires one
 /// more row.
 struct TextReader {
-  bool (*recognizes)(detail::TextTable const&);
-  VectorFile (*read)(detail::TextTable const&);
+  bool (*recognizes)(TextTable const&);
+  VectorFile (*read)(TextTable const&);
 };
 constexpr std::array<TextReader, 8> text_readers{{
-    {detail::is_gladstone_tecplot, detail::read_gladstone_tecplot},
-    {detail::is_gladstone_csv, detail::read_gladstone_csv},
-    {detail::is_pivlab, detail::read_pivlab},
-    {detail::is_tecplot, detail::read_tecplot},
-    {detail::is_dantec, detail::read_dantec},
-    {detail::is_jpiv, detail::read_jpiv},
-    {detail::is_openpiv, detail::read_openpiv},
-    {detail::has_named_columns, detail::read_named_columns},
+    {is_gladstone_tecplot, read_gladstone_tecplot},
+    {is_gladstone_csv, read_gladstone_csv},
+    {is_pivlab, read_pivlab},
+    {is_tecplot, read_tecplot},
+    {is_dantec, read_dantec},
+    {is_jpiv, read_jpiv},
+    {is_openpiv, read_openpiv},
+    {has_named_columns, read_named_columns},
 }};
 
 /// Reader of a format that is not text, selected by the extension of the file. A new format requires one more row.
@@ -36,12 +36,12 @@ struct BinaryReader {
   VectorFile (*read)(std::string const& path);
 };
 constexpr std::array<BinaryReader, 6> binary_readers{{
-    {".h5", detail::read_gladstone_hdf5},
-    {".hdf5", detail::read_gladstone_hdf5},
-    {".nc", detail::read_vector_netcdf},
-    {".mat", detail::read_vector_matlab},
-    {".vti", detail::read_vector_vtk},
-    {".vtp", detail::read_vector_vtk},
+    {".h5", read_gladstone_hdf5},
+    {".hdf5", read_gladstone_hdf5},
+    {".nc", read_vector_netcdf},
+    {".mat", read_vector_matlab},
+    {".vti", read_vector_vtk},
+    {".vtp", read_vector_vtk},
 }};
 
 /// Writer of a format, selected by the extension of the file. A new format requires one more row.
@@ -50,13 +50,13 @@ struct VectorWriter {
   void (*write)(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 };
 constexpr std::array<VectorWriter, 7> vector_writers{{
-    {".h5", detail::write_vector_hdf5},
-    {".csv", detail::write_vector_csv},
-    {".nc", detail::write_vector_netcdf},
-    {".mat", detail::write_vector_matlab},
-    {".dat", detail::write_vector_tecplot},
-    {".vti", detail::write_vector_vti},
-    {".vtp", detail::write_vector_vtp},
+    {".h5", write_vector_hdf5},
+    {".csv", write_vector_csv},
+    {".nc", write_vector_netcdf},
+    {".mat", write_vector_matlab},
+    {".dat", write_vector_tecplot},
+    {".vti", write_vector_vti},
+    {".vtp", write_vector_vtp},
 }};
 
 /// Returns the writer for the extension of a file; null if there is none.
@@ -67,7 +67,7 @@ VectorWriter const* find_writer(std::string const& path) {
 }
 
 VectorFile read_text(std::string const& path) {
-  detail::TextTable const table = detail::read_text_table(path);
+  TextTable const table = read_text_table(path);
   auto const* const reader =
       std::find_if(text_readers.begin(), text_readers.end(), [&](TextReader const& r) { return r.recognizes(table); });
   return reader->read(table);
@@ -162,4 +162,4 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   writer->write(path, field, origin);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

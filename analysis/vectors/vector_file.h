@@ -9,7 +9,7 @@
 #include "render/base/warning.h"
 #include "render/files/hdf5_file.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Conversion from the numbers of a vector file to our conventions: column to the right and row downwards from 0 at the
 /// first pixel's centre, displacement = frame B minus frame A (BOS: measurement minus reference), v downwards.
@@ -113,4 +113,4 @@ void take_vectors(DisplacementField& field, std::vector<std::size_t> const& orde
 /// complete lattice (within 0.01 px). Otherwise sets columns and rows to 0 and preserves the order.
 void arrange_as_grid(DisplacementField& field);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -10,7 +10,7 @@
 
 #include "analysis/vectors/vector_file.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
 
 bool inside(double coordinate, int size) {
@@ -151,4 +151,4 @@ std::string describe_suspect_positions(DisplacementField const& screened, int im
       100.0 * share, extent.text());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -5,7 +5,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 /// Tolerance for window centres outside of the image. Software that counts pixels from 1, or from a window's edge,
 /// differs from our conventions by at most 1.5 px.
@@ -40,4 +40,4 @@ std::string reason_to_reject_positions(DisplacementField const& screened, Reject
 /// Returns a warning if at least 16 vectors cover less than a twentieth of the image's area, else an empty string.
 std::string describe_suspect_positions(DisplacementField const& screened, int image_columns, int image_rows);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Sums each value over all threads of a block, in a fixed order, and returns the sums to every thread. Contains a
 /// barrier before the sums are read, but none after.
@@ -26,4 +26,4 @@ __device__ void block_sums(T (&value)[count], T* slots) {
   }
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -14,7 +14,7 @@
 
 /// Kernel launches of a correlation, in the order of their calls. All pointers are device addresses; all work is queued
 /// on the default stream and checked at launch.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Highest finite grey level of an image pair and negative of the lowest, both as keys of ordered_key().
 struct LevelKeys {
@@ -154,4 +154,4 @@ void extend_predictor(Vec2d const* nodes, double smoothing, PredictorView const&
 void deform_pair(BsplineView<float> const& reference, BsplineView<float> const& flow, int degree,
                  DevicePair const& original, PredictorView const& predictor, DevicePair const& deformed);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -9,7 +9,7 @@
 #include "cuda/device/cuda_error.h"
 #include "cuda/device/launch.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 constexpr int most_threads = 256;
@@ -117,4 +117,4 @@ void estimate_sigma(MatchedWindows const& windows, float* scratch, int slots, Ve
   check_launch("average_variances");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

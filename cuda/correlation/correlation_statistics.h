@@ -3,7 +3,7 @@
 #include "cuda/correlation/correlation_kernels.h"
 
 /// Standard uncertainties by correlation statistics on the device; queued and checked as in correlation_kernels.h.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Windows of the last pass on frames deformed by its vectors.
 struct MatchedWindows {
@@ -28,4 +28,4 @@ bool statistics_need_scratch(int side);
 /// @param sigma  output: standard uncertainty of each vector [px]; NaN if it is not valid or has no estimate
 void estimate_sigma(MatchedWindows const& windows, float* scratch, int slots, Vec2d* variances, Vec2d* sigma);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -20,7 +20,7 @@
 #include "cuda/device/staging_pool.h"
 #include "render/base/interrupt.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 constexpr char const* purpose = "correlation";
@@ -427,4 +427,4 @@ void CudaCorrelator::enqueue(DeviceImage const& reference, DeviceImage const& fl
   state_->plan_for(reference.columns, reference.rows).enqueue(reference, flow);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

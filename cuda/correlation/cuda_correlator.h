@@ -5,7 +5,7 @@
 #include "analysis/correlation/correlator.h"
 #include "cuda/device/device_image.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// StandardCorrelator on the device: shares the functions per pixel, window and vector, but not the Fourier transforms.
 /// No data are transferred between passes, except for the additional passes where displacement gradients are steep,
@@ -32,4 +32,4 @@ class CudaCorrelator final : public Correlator {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -2,7 +2,7 @@
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/device/cuda_error.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 constexpr int threads = 256;
@@ -122,4 +122,4 @@ void deform_pair(BsplineView<float> const& reference, BsplineView<float> const& 
   check_launch("deform_pixels");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -25,7 +25,7 @@
 #define GLADSTONE_KEEP_LOOP
 #endif
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Filter of scc, which leaves the cross spectrum unchanged.
 struct WholeSpectrum {
@@ -198,4 +198,4 @@ struct FactoredTransform {
   }
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

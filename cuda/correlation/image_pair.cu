@@ -6,7 +6,7 @@
 #include "cuda/device/ordered_key.cuh"
 #include "render/base/contracts.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 constexpr int threads = 256;
@@ -179,4 +179,4 @@ void filter_pair(DevicePair const& pair, float const* taps, int tap_count, GreyP
   for (int k = 0; k < 2; ++k) spline[k] = {coefficients[k], columns + margin, columns, rows};
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

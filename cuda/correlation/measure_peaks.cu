@@ -4,7 +4,7 @@
 #include "cuda/device/cuda_error.h"
 
 /// Subpixel measurement of the peaks of all windows.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 /// Samples around a peak as a plane of correlation coefficients.
@@ -55,4 +55,4 @@ bool has_own_kernel(WindowJob const& job) {
   return job.particles == nullptr && job.side == job.size && (job.size == 32 || job.size == 64);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -7,7 +7,7 @@
 #include "cuda/correlation/small_transform.h"
 
 /// Correlation plane in the layout of a transform of two columns at a time, and its maxima.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Correlation plane in which columns 2 i and 2 i + 1 are interleaved; pairs of columns are `pitch` apart.
 template <int pitch>
@@ -79,4 +79,4 @@ GLADSTONE_HD void maxima_of_block(PairedPlane<pitch> const& plane, int radius, i
   }
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -3,7 +3,7 @@
 #include "analysis/correlation/window_measurement.h"
 #include "cuda/correlation/paired_plane.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Correlation plane in shared memory, in rows of `pitch` values, with shift (0, 0) at `centre`.
 template <int pitch>
@@ -239,4 +239,4 @@ __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* s
   return peaks;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -2,7 +2,7 @@
 
 #include "cuda/correlation/small_transform.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Phase of the cross spectrum, weighted by the spectrum of particle images. Eckstein & Vlachos (2009).
 struct PhaseSpectrum {
@@ -14,4 +14,4 @@ struct PhaseSpectrum {
   }
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -4,7 +4,7 @@
 
 /// Fourier transforms of 16 or 32 values in the registers of one thread: all indices are compile-time constants in
 /// unrolled loops.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Transforms `size` values in place: sum over n of z(n) exp(sign 2 pi i k n / size); value k is written to
 /// z[place(k)].
@@ -30,4 +30,4 @@ struct RegisterFourier {
   }
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -4,7 +4,7 @@
 
 /// Fourier transforms of two to sixteen values, roots of unity, and the cross spectrum of two real lines transformed as
 /// one.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 struct alignas(8) Complex {
   float re;
@@ -171,4 +171,4 @@ GLADSTONE_HD constexpr Complex packed_product(Complex p, Complex m, Complex r, C
   return {0.25f * (first.re - second.im), 0.25f * (first.im + second.re)};
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -2,7 +2,7 @@
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/device/cuda_error.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 constexpr int threads = 128;
@@ -100,4 +100,4 @@ void finish(WindowCorrelation const* windows, GridVector const* vectors, Interro
   check_launch("take_measured");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -9,7 +9,7 @@
 
 /// Correlation of windows with the transform lengths of common passes: one window per block, by FactoredTransform. Only
 /// the peaks are written to global memory.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 constexpr int most_warps = 32;
@@ -203,4 +203,4 @@ void correlate_windows_by_factors(WindowJob const& job, WindowPeaks* peaks) {
   GLADSTONE_EXPECTS(!"a factored size");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -10,7 +10,7 @@
 
 /// Correlation of windows of any size: one window per block, one line per warp, in shared or global memory. Slower than
 /// the specialised kernels.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 constexpr unsigned all_lanes = 0xffffffffu;
@@ -253,4 +253,4 @@ void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, floa
   check_launch("correlate_window_by_lines");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

@@ -11,7 +11,7 @@
 ///     back along x;
 ///  4. each thread processes columns x and x + size/2 of the plane, joined as complex numbers, of every second row,
 ///     and transforms back along y.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 constexpr unsigned all_lanes = 0xffffffffu;
@@ -260,4 +260,4 @@ void correlate_windows_of_32(WindowJob const& job, WindowPeaks* peaks) {
   check_launch("correlate_window_of_32");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

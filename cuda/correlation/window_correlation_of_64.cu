@@ -7,7 +7,7 @@
 
 /// Correlation of windows with supports of 64 px: one window per block of 256 threads, by WindowTransform, whose code
 /// fits into the instruction cache. Only the peaks are written to global memory.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 namespace {
 
 using Transform = WindowTransform;
@@ -294,4 +294,4 @@ void correlate_windows_of_64(WindowJob const& job, WindowPeaks* peaks) {
   }
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

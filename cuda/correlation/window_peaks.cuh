@@ -4,7 +4,7 @@
 #include "cuda/correlation/peak_search.cuh"
 
 /// Output of the peaks of a window, by the thread block that computed its correlation plane.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 /// Writes the result of a window that was not correlated.
 __device__ inline void write_no_result(WindowCorrelation::Outcome why, WindowPeaks& peaks) {
@@ -45,4 +45,4 @@ __device__ void write_peaks(Plane const& plane, int radius, HighestPeaks const* 
   write_peak_samples(plane, count, peak, scale, peaks);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

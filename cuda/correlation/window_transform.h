@@ -19,7 +19,7 @@
 /// Wave number or shift p + 8 q of a column is in row 4 p + q % 4 of the lower (q < 4) or upper half of the memory. The
 /// second pass of a column thus writes where it reads. Half-warps, which process rows q and q + 1, access all banks,
 /// since the row length is an odd multiple of eight values.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline correlation {
 
 struct WindowTransform {
   static constexpr int size = 64;
@@ -242,4 +242,4 @@ struct WindowTransform {
   }
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline correlation

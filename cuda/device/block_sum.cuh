@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Sums `value` over the threads of a block whose indices are equal modulo `groups`, in an order that depends on the
 /// block size only.
@@ -25,4 +25,4 @@ __device__ Value block_sum(Value const& value, Value* shared) {
   return sum;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

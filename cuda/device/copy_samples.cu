@@ -3,7 +3,7 @@
 #include "cuda/device/copy_samples.h"
 #include "cuda/device/launch.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 namespace {
 
 constexpr int threads = 256;
@@ -36,4 +36,4 @@ void copy_samples(ImageSamples const& image, double* levels, unsigned long long*
   });
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 void check(cudaError_t status, char const* call) {
   if (status == cudaSuccess) return;
@@ -18,4 +18,4 @@ void check_launch(char const* kernel) {
 #endif
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -5,7 +5,7 @@
 #include "cuda/device/launch.h"
 #include "cuda/device/ordered_key.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 namespace {
 
 constexpr int threads = 256;
@@ -70,4 +70,4 @@ void ideal_levels(PixelDetector const& detector, double const* light, std::size_
   launch("ideal_levels", ideal_levels_kernel, count, detector, light, count, levels);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -5,7 +5,7 @@
 #include "render/sensor/pixel_detector.h"
 
 /// Pixel-wise operations on light in device memory.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Computes light[i] = white[i] - light[i].
 void take_from_white(double const* white, double* light, std::size_t count);
@@ -24,4 +24,4 @@ void record_levels(PixelDetector const& detector, RandomStream stream, double co
 /// Applies PixelDetector::ideal() to every pixel.
 void ideal_levels(PixelDetector const& detector, double const* light, std::size_t count, double* levels);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -6,7 +6,7 @@
 
 #include "cuda/device/device_memory.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// RAII array in device memory, allocated from the memory pool in the order of the default stream.
 template <class T>
@@ -76,4 +76,4 @@ class PinnedBuffer {
   std::size_t bytes_ = 0;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -1,6 +1,6 @@
 #include "cuda/device/device_frames.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 DeviceFrames::DeviceFrames(int columns, int rows) : columns_(columns), rows_(rows) {
   for (auto& levels : levels_) {
@@ -17,4 +17,4 @@ Image<double> const& DeviceFrames::on_host(Frame frame) const {
   return image;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

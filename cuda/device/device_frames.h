@@ -6,7 +6,7 @@
 #include "render/base/image.h"
 #include "render/scene/ray_hit.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Grey levels of frames A and B in device memory; copied to the host on first access.
 class DeviceFrames final : public StoredFrames {
@@ -27,4 +27,4 @@ class DeviceFrames final : public StoredFrames {
   mutable Image<double> on_host_[frame_count];
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

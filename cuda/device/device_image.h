@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Image in device memory: grey levels row by row.
 struct DeviceImage {
@@ -9,4 +9,4 @@ struct DeviceImage {
   int rows;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

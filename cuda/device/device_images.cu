@@ -2,7 +2,7 @@
 #include "cuda/device/device_images.h"
 #include "render/sensor/exposure.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 namespace {
 
 __global__ void to_light_kernel(unsigned long long const* fixed_point, double* light, std::size_t count) {
@@ -32,4 +32,4 @@ void ImagePairOnDevice::to_light(DeviceLight& light) const {
   }
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

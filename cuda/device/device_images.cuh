@@ -2,7 +2,7 @@
 
 #include "cuda/device/device_images.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Rounds a contribution to a pixel to whole units of the images' fixed point. Sums of whole numbers are exact, so that
 /// images depend neither on the order of the contributions nor on intermediate accumulators.
@@ -15,4 +15,4 @@ __device__ inline void add_light(DeviceImages const& images, Frame frame, int co
   atomicAdd(images.light[static_cast<int>(frame)] + static_cast<std::size_t>(row) * images.columns + column, share);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -4,7 +4,7 @@
 
 #include "cuda/device/device_light.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Images under accumulation: 64-bit fixed point, row by row.
 struct DeviceImages {
@@ -29,4 +29,4 @@ class ImagePairOnDevice {
   DeviceArray<unsigned long long> light_[frame_count];
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

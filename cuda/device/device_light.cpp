@@ -6,7 +6,7 @@
 #include "cuda/device/detect_light.h"
 #include "render/base/parallel.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 namespace {
 
 /// Asynchronous copy from the device to page-locked memory.
@@ -105,4 +105,4 @@ std::unique_ptr<StoredFrames const> DeviceLight::ideal(Detector const& detector)
   return frames;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

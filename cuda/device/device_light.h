@@ -5,7 +5,7 @@
 #include "render/scene/ray_hit.h"
 #include "render/scene/rendered_light.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Light of both frames in device memory, with a camera model that runs on the device.
 class DeviceLight final : public RenderedLight {
@@ -32,4 +32,4 @@ class DeviceLight final : public RenderedLight {
   DeviceArray<double> light_[frame_count];
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

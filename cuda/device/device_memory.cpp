@@ -7,7 +7,7 @@
 
 #include "cuda/device/cuda_error.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 namespace {
 
 /// Registers an allocation. @return false if it would exceed the limit
@@ -115,4 +115,4 @@ void release_pinned(void* memory) noexcept {
   if (memory) cudaFreeHost(memory);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -9,7 +9,7 @@
 
 /// Device memory: allocation, accounting and transfers. Does not include CUDA headers, so that tests and benchmarks
 /// outside of cuda/ can use it.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Device memory held by the arrays of this process, its maximum, and its limit [bytes]. Tests set the limit and read
 /// the maximum.
@@ -65,4 +65,4 @@ void wait_for_device();
 void* allocate_pinned(std::size_t bytes);
 void release_pinned(void* memory) noexcept;
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

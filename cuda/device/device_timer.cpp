@@ -2,7 +2,7 @@
 
 #include "cuda/device/cuda_error.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 struct DeviceTimer::Events {
   Events() {
@@ -31,4 +31,4 @@ double DeviceTimer::stop() {
   return 1e-3 * static_cast<double>(milliseconds);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

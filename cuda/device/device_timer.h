@@ -2,7 +2,7 @@
 
 #include <memory>
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Measures, on the device, the time taken by work on the default stream. Does not include CUDA headers, so that
 /// benchmarks can use it.
@@ -22,4 +22,4 @@ class DeviceTimer {
   std::unique_ptr<Events> events_;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -8,7 +8,7 @@
 #include "cuda/device/cuda_error.h"
 #include "cuda/device/device_memory.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Maximum number of ray-tracing steps per launch, equivalent to a second or two. A running launch cannot be cancelled,
 /// so Ctrl-C has to wait for it.
@@ -53,4 +53,4 @@ void allow_shared_bytes(Kernel kernel, std::size_t bytes) {
         "cudaFuncSetAttribute");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Conversion between floating-point numbers and unsigned integers of the same order, for atomicMax. Key 0 is below
 /// those of all numbers.
@@ -13,4 +13,4 @@ __device__ inline double key_value(unsigned long long key) {
   return __longlong_as_double(static_cast<long long>(key >> 63 ? key & 0x7fffffffffffffffull : ~key));
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -2,7 +2,7 @@
 
 #include "cuda/device/runnable_code.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 namespace {
 
 __global__ void any_kernel() {}
@@ -22,4 +22,4 @@ std::string reason_code_cannot_run() {
   return pools != 0 ? "" : "its driver has no memory pools";
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

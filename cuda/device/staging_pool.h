@@ -8,7 +8,7 @@
 
 #include "cuda/device/device_array.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline device {
 
 /// Page-locked buffers for several threads that copy data for one device: while it works on the data of one thread,
 /// others fill their buffers. Their number is limited, since page-locked memory is not available to other programs.
@@ -61,4 +61,4 @@ class StagingPool {
   std::vector<std::unique_ptr<PinnedBuffer>> idle_;  ///< idle buffers, the most recently used one last
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline device

@@ -2,7 +2,7 @@
 #include "cuda/focused_dots/dot_cones.h"
 #include "cuda/focused_dots/dot_groups.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 namespace {
 
 constexpr int threads = dot_threads, warps = dot_warps;
@@ -78,4 +78,4 @@ void check_dots(DotModel const& model, DeviceMedium const& medium, SourcesView<d
       medium);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

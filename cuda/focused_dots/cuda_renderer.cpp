@@ -19,7 +19,7 @@
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/focused_dots/owned_dot_model.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 namespace {
 
 /// Maximum memory for the ray cones of one batch of dots [bytes].
@@ -144,7 +144,7 @@ CudaRenderer::~CudaRenderer() = default;
 
 Rendering CudaRenderer::render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources,
                                RenderImages images, RenderTheory theory) {
-  std::optional<FocusedDots> const bench = focused_dots(scene, plan);
+  std::optional<FocusedDots> const bench = build_focused_dots(scene, plan);
   GLADSTONE_EXPECTS(bench);
   if (!uploads_->medium.serves(scene)) {
     uploads_->deflections.forget();
@@ -173,4 +173,4 @@ Rendering CudaRenderer::render(Scene const& scene, RenderPlan const& plan, DotPa
   return rendering;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

@@ -5,7 +5,7 @@
 
 #include "render/scene/renderer.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 
 /// Renderer for focused dots on the first visible CUDA device. The check rays of a dot are traced by a warp; its ray
 /// cone is integrated to truth and light by a block. All computations are in double precision.
@@ -24,4 +24,4 @@ class CudaRenderer final : public Renderer {
   std::unique_ptr<Uploads> uploads_;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

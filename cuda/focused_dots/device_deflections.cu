@@ -5,7 +5,7 @@
 #include "cuda/focused_dots/device_deflections.h"
 #include "render/base/interrupt.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 namespace {
 
 constexpr int threads = 128;
@@ -58,4 +58,4 @@ DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionTableLay
   table_ = plan.table.with(values);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

@@ -6,7 +6,7 @@
 #include "cuda/rays/device_medium.h"
 #include "render/focused_dots/deflection_map.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 
 /// Deflection table of a scene in device memory; counterpart of DeflectionMap on the host.
 class DeviceDeflections {
@@ -22,4 +22,4 @@ class DeviceDeflections {
   DeviceArray<std::byte> values_;  ///< all values of the table: displacements, shifts, and their derivatives
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

@@ -10,7 +10,7 @@
 /// Kernel launches for dots. All pointers in models, media and dots are device addresses. A launch processes `count`
 /// consecutive dots. Sums over a dot have a fixed order, and light is accumulated in whole units, so that results are
 /// bitwise the same for any number of blocks.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 
 /// Ray statistics over all dots of a rendering.
 struct RayTally {
@@ -37,4 +37,4 @@ void expose_dots(DotModel const& model, std::uint64_t count, DotCone const* cone
 void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMedium const& medium,
                       SourcesView<double> const& dots, std::uint64_t count, DotTheory* out);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

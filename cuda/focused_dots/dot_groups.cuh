@@ -3,7 +3,7 @@
 #include "render/focused_dots/moment_images.h"
 
 /// Groups of device threads that process a dot together; counterpart of OneLane on the CPU.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 
 inline constexpr int dot_threads = 128;
 inline constexpr int warp_size = 32;
@@ -76,4 +76,4 @@ struct Block {
   __device__ static int take(int& listed) { return atomicAdd(&listed, 1); }
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

@@ -8,7 +8,7 @@
 #include "cuda/focused_dots/dot_groups.cuh"
 
 /// Accumulation of a dot's light by a thread block.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 
 /// Square stamp in shared memory in which a block accumulates a dot's light, with one copy per warp, to reduce the
 /// number of atomic additions to the image. Light outside the stamp is added to the image directly.
@@ -82,4 +82,4 @@ inline int patch_side(DotModel const& model, std::size_t most_bytes) {
   return side;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

@@ -4,7 +4,7 @@
 #include "render/focused_dots/narrow_light.h"
 #include "render/focused_dots/square_light.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 namespace {
 
 using Squares = SquareSums<4>;
@@ -124,4 +124,4 @@ void expose_dots(DotModel const& model, std::uint64_t count, DotCone const* cone
   if (model.moment_images.exist()) expose_wide_cones(model, count, cones, images);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

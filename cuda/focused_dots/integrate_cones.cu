@@ -2,7 +2,7 @@
 #include "cuda/focused_dots/dot_cones.h"
 #include "cuda/focused_dots/dot_groups.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 namespace {
 
 __global__ void __launch_bounds__(dot_threads, 3)
@@ -33,4 +33,4 @@ void integrate_cones(DotModel const& model, std::uint64_t count, DotCone* cones,
   check_launch("integrate_cones");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

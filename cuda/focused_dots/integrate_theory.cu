@@ -2,7 +2,7 @@
 #include "cuda/device/launch.h"
 #include "cuda/focused_dots/dot_cones.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 namespace {
 
 constexpr int threads = 128;
@@ -41,4 +41,4 @@ void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMe
       medium);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

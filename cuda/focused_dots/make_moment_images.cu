@@ -2,7 +2,7 @@
 #include "cuda/focused_dots/dot_cones.h"
 #include "cuda/focused_dots/dot_groups.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline focused_dots {
 namespace {
 
 /// Computes all images of one sub-pixel phase and moment per block. The output must be initialised to zero.
@@ -26,4 +26,4 @@ void make_moment_images(DotModel const& model, double* out) {
   check_launch("make_moment_images");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline focused_dots

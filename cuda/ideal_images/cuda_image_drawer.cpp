@@ -6,7 +6,7 @@
 #include "cuda/ideal_images/tile_lists.h"
 #include "render/base/contracts.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 namespace {
 
 constexpr std::uint32_t least_capacity = 256;
@@ -34,4 +34,4 @@ std::shared_ptr<RenderedLight const> CudaImageDrawer::draw(std::array<std::vecto
   return light;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

@@ -2,7 +2,7 @@
 
 #include "render/ideal_images/ideal_images.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 
 /// Draws the images of particles on the GPU, where the light remains. The light is bitwise equal to that computed on
 /// the CPU.
@@ -13,4 +13,4 @@ class CudaImageDrawer final : public ImageDrawer {
                                             GaussianSpot<double> const& shape, int columns, int rows) override;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

@@ -7,7 +7,7 @@
 #include "cuda/ideal_images/pair_kernels.h"
 #include "render/ideal_images/host_pair_batches.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 namespace {
 
 constexpr double workspace_bytes = 512e6;  // memory for pairs that are rendered at the same time
@@ -133,4 +133,4 @@ DeviceBuffer CudaPairBatches::displacement() {
   return {out->data(), out};
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

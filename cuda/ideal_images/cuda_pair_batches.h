@@ -4,7 +4,7 @@
 #include "cuda/ideal_images/tile_lists.h"
 #include "render/ideal_images/pair_batch.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 
 /// Renders batches of pairs on the GPU: seeds the particles, moves, illuminates and draws them, and records the frames,
 /// without transfers to the host.
@@ -49,4 +49,4 @@ class CudaPairBatches final : public PairBatchRenderer {
   Workspace workspace_;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

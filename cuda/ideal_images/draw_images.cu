@@ -3,7 +3,7 @@
 #include "cuda/device/launch.h"
 #include "cuda/ideal_images/tile_lists.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 namespace {
 
 constexpr int threads = 256;
@@ -212,4 +212,4 @@ void draw_images(DeviceParticleImages const& images, GaussianSpot<double> const&
   check_launch("draw_images");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

@@ -5,7 +5,7 @@
 #include "cuda/ideal_images/pair_kernels.h"
 #include "cuda/ideal_images/tile_lists.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 namespace {
 
 constexpr int threads = 128;                  // three blocks then fill the registers of a multiprocessor
@@ -108,4 +108,4 @@ void compute_displacements(PairModel const* models, std::size_t count, int colum
   check_launch("compute_displacements");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

@@ -3,7 +3,7 @@
 #include "cuda/ideal_images/tile_lists.h"
 #include "render/ideal_images/pair_batch.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 
 /// Pairs to render and their models, in device memory.
 struct PairsOnDevice {
@@ -32,4 +32,4 @@ void record_pairs(PairsOnDevice const& pairs, double const* light, std::size_t p
 /// Computes the displacement of every model at every pixel. @param out  [model][component][row][column]
 void compute_displacements(PairModel const* models, std::size_t count, int columns, int rows, float* out);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

@@ -2,7 +2,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 
 TileListMemory::TileListMemory(int columns, int rows, std::size_t frames, std::uint32_t capacity) : frames_(frames) {
   GLADSTONE_EXPECTS(columns > 0 && rows > 0 && frames > 0 && capacity > 0);
@@ -43,4 +43,4 @@ bool TileListMemory::complete() {
   return false;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

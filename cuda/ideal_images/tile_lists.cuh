@@ -2,7 +2,7 @@
 
 #include "cuda/ideal_images/tile_lists.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 
 /// Enters the image with the given index into the lists of the tiles of a frame that it overlaps.
 __device__ inline void enter_image(TileLists const& lists, GaussianSpot<double> const& shape, std::size_t frame,
@@ -28,4 +28,4 @@ __device__ inline void enter_image(TileLists const& lists, GaussianSpot<double> 
   }
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

@@ -7,7 +7,7 @@
 #include "render/ideal_images/particle_image.h"
 #include "render/sensor/diffraction_spot.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline ideal_images {
 
 inline constexpr int tile_size = 32;  ///< side of the square tiles of an image [px]
 
@@ -69,4 +69,4 @@ void list_images(DeviceParticleImages const& images, GaussianSpot<double> const&
 void draw_images(DeviceParticleImages const& images, GaussianSpot<double> const& shape, TileLists const& lists,
                  PairLight const& light, unsigned long long* brightest);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline ideal_images

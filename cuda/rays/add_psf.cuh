@@ -4,7 +4,7 @@
 #include "render/scene/spot.h"
 
 /// PSFs of single rays, added to the image by a warp each.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 inline constexpr int warp_size = 32;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
@@ -44,4 +44,4 @@ __device__ void add_psfs(Launch const& launch, bool mine, RayHit<double> const& 
   }
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

@@ -1,7 +1,7 @@
 #include "cuda/device/cuda_error.h"
 #include "cuda/rays/trace_particles.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 constexpr int threads = 64;
@@ -105,4 +105,4 @@ void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderVi
       medium);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

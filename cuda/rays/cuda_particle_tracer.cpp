@@ -15,7 +15,7 @@
 #include "render/rays/trace_particles.h"
 #include "render/scene/particle_scene.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 /// Maximum memory [bytes] and maximum number of particles of a batch.
@@ -343,4 +343,4 @@ Rendering trace_particles_on_device(Scene const& scene, RenderPlan const& plan, 
   return rendering;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

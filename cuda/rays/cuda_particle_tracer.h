@@ -3,7 +3,7 @@
 #include "cuda/rays/particles_on_device.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 /// Renders images and truth of particles on the device, with the results of trace_particles(). Aiming is also done on
 /// the device, one thread per particle; particles whose rays cannot be restricted to the stop (filled_stop.h) are aimed
@@ -15,4 +15,4 @@ Rendering trace_particles_on_device(Scene const& scene, RenderPlan const& plan, 
                                     ParticleLight light, RenderImages images, DeviceMedium const& medium,
                                     ScatteringCache& kept, PinnedBuffer& staging);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

@@ -21,7 +21,7 @@
 #include "render/rays/source_tracer.h"
 #include "render/scene/spot.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 /// Maximum memory for the ray sums of one batch of sources [bytes].
@@ -393,4 +393,4 @@ Rendering CudaRaysRenderer::render_particles(Scene const& scene, RenderPlan cons
                                    uploads_->scattering, uploads_->staging);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

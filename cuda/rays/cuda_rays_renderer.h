@@ -5,7 +5,7 @@
 
 #include "render/scene/renderer.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 /// General ray-tracing renderer on the first visible CUDA device, with the results of RaysRenderer: one block per
 /// source, in double precision. Dot sources are aimed on the CPU.
@@ -27,4 +27,4 @@ class CudaRaysRenderer final : public Renderer {
   std::unique_ptr<Uploads> uploads_;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

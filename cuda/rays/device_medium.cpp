@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 template <class Grid>
@@ -69,4 +69,4 @@ MirroredMedium::MirroredMedium(Medium<double> const& medium) {
       medium);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

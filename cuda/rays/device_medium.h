@@ -7,7 +7,7 @@
 #include "render/medium/cell_polynomials.h"
 #include "render/scene/scene.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 template <class Variant, class... More>
 struct WithAlternatives;
@@ -69,4 +69,4 @@ class MediumCache {
   MirroredMedium medium_;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

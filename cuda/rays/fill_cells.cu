@@ -1,7 +1,7 @@
 #include "cuda/device/cuda_error.h"
 #include "cuda/rays/device_medium.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 constexpr int threads = 128;
@@ -29,4 +29,4 @@ void fill_cells(GriddedIndex<double, float, Basis, 3> const& grid, double* out) 
 template void fill_cells(SplineVolume<double> const&, double*);
 template void fill_cells(LinearVolume<double> const&, double*);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

@@ -4,7 +4,7 @@
 #include "cuda/rays/trace_sources.h"
 
 /// Shared memory of a block of threads that traces sources.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 inline constexpr int source_threads = 128;
 
@@ -122,4 +122,4 @@ struct SharedParts {
   }
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

@@ -2,7 +2,7 @@
 
 #include "cuda/rays/trace_particles.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 /// Ray of a particle at one pulse, with and without the medium.
 struct ParticleRay {
@@ -61,4 +61,4 @@ __device__ inline void add_ends(ParticlesLaunch const& launch, unsigned int cons
   }
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

@@ -5,7 +5,7 @@
 #include "render/base/parallel.h"
 #include "render/rays/hit_grid.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 /// Widest square of pixels in which a warp accumulates PSFs [px].
@@ -148,4 +148,4 @@ void ParticleBatch::upload(Particles const& particles, std::size_t first, Pinned
   }
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

@@ -7,7 +7,7 @@
 #include "cuda/rays/trace_particles.h"
 #include "render/rays/particle_tracer.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 /// Cache of the scattering table on the device: that of the last scene, which is often that of the next one, too.
 class ScatteringCache {
@@ -133,4 +133,4 @@ class ParticleBatch {
   DeviceArray<std::uint32_t> listed_;
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

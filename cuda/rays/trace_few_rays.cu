@@ -2,7 +2,7 @@
 #include "cuda/rays/particle_ray.cuh"
 #include "cuda/rays/warp_spots.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 constexpr int threads = 128, warps = threads / warp_size;
@@ -99,4 +99,4 @@ void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium const& medium, A
       medium);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

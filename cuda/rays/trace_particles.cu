@@ -4,7 +4,7 @@
 #include "cuda/rays/hit_window.cuh"
 #include "cuda/rays/particle_ray.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 constexpr int threads = source_threads;
@@ -186,4 +186,4 @@ void see_particles(LadderView const& ladder, PulseAim const* aims, Vec2d const* 
   check_launch("see_particles");
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

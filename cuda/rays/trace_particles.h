@@ -14,7 +14,7 @@
 #include "render/rays/stop_rule.h"
 #include "render/scene/spot.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 /// Scattering model of the particles, selected at run time, so that one kernel suffices.
 struct AnyScattering {
@@ -219,4 +219,4 @@ void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium const& medium, A
 void see_particles(LadderView const& ladder, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
                    std::uint64_t count, ParticleSteps const& steps, DotTruth* truth, DotTruth* ambient);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

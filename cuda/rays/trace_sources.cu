@@ -3,7 +3,7 @@
 #include "cuda/rays/add_psf.cuh"
 #include "cuda/rays/hit_window.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 namespace {
 
 constexpr int threads = source_threads;
@@ -127,4 +127,4 @@ void trace_sources(SourcesLaunch const& launch, DeviceMedium const& medium, Sour
       medium);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

@@ -10,7 +10,7 @@
 #include "render/scene/spot.h"
 #include "render/scene/truth_error.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 /// Maximum number of rays of a source traced by one block; larger numbers are divided among several blocks.
 inline constexpr std::uint64_t max_rays_per_share = 16384;
@@ -67,4 +67,4 @@ int widest_window_px(SourcesLaunch const& launch, DeviceMedium const& medium);
 void trace_sources(SourcesLaunch const& launch, DeviceMedium const& medium, SourceOnDevice const* sources,
                    std::uint64_t count, SourcesTraced const& traced);
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

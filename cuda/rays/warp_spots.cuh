@@ -3,7 +3,7 @@
 #include "cuda/rays/add_psf.cuh"
 #include "cuda/rays/trace_particles.h"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline rays {
 
 /// Accumulates the Gaussian PSFs of a warp's rays, which may belong to several particles. Each lane computes the column
 /// and row shares of its ray; then all lanes sum over a particle's rays in the pixels of its square, one particle after
@@ -77,4 +77,4 @@ class WarpSpots {
   float *columns_, *rows_;  ///< [lane][pixel]: column shares, and row shares multiplied by the light
 };
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline rays

@@ -6,7 +6,7 @@
 #include "cuda/tomography/cuda_volume.h"
 #include "cuda/tomography/sart_kernels.cuh"
 
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline tomography {
 namespace {
 
 using tomography::SweepNorms;
@@ -178,4 +178,4 @@ std::unique_ptr<tomography::SartVolume> make_cuda_volume(tomography::SartProblem
   return std::make_unique<CudaVolume>(problem);
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline tomography

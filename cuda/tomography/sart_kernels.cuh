@@ -8,7 +8,7 @@
 #include "cuda/device/block_sum.cuh"
 
 /// Kernels of SART. Sums over a block are stored for each block, and added by the host in the order of the blocks.
-namespace gladstone::cuda {
+namespace gladstone::cuda::inline tomography {
 
 inline constexpr int line_threads = 128;
 inline constexpr int node_threads = 256;
@@ -175,4 +175,4 @@ __global__ void __launch_bounds__(node_threads)
   if (threadIdx.x == 0) sums[blockIdx.x] = all;
 }
 
-}  // namespace gladstone::cuda
+}  // namespace gladstone::cuda::inline tomography

@@ -26,7 +26,7 @@ DesignAnswer answer(SetupText const& setup, DesignRequest request, FigureOptions
                     std::string const& device) {
   request.setup = setup.name;
   request.open_device = [&device] { return open_device(device); };
-  DesignReport const report = design(setup.document(), request);
+  DesignReport const report = answer_design(setup.document(), request);
   log_warnings(report.warnings);
   nlohmann::ordered_json json;
   if (!figures.folder.empty()) json["figures"] = draw_design(report, figures.folder, figures.format);

@@ -176,7 +176,7 @@ nb::object field_array(nb::handle_t<MeasuredField> self, std::string const& name
 
 /// Returns one column of the files of vectors by name, "u_raw_px", of length `size`.
 nb::object field_column(MeasuredField const& self, std::string const& name) {
-  std::vector<double> values = detail::column_named(detail::vector_columns(self.field), name).values;
+  std::vector<double> values = column_named(vector_columns(self.field), name).values;
   std::size_t const count = values.size();
   return array_of(std::move(values), {count});
 }

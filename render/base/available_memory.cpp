@@ -8,7 +8,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 double available_memory() {
   double available = std::numeric_limits<double>::infinity();
@@ -36,4 +36,4 @@ void require_memory(std::string const& path, std::string const& what, double byt
                               what, bytes / 1e9, available / 1e9));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

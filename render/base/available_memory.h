@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Returns the memory that can be allocated without swapping [bytes]: MemAvailable of the system, or the remaining
 /// memory of the control group (cgroup v2) if that is smaller. Infinite if neither is reported.
@@ -14,4 +14,4 @@ double available_memory();
 /// @throws DataError (code `memory`) if fewer than `bytes` are available
 void require_memory(std::string const& path, std::string const& what, double bytes);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -5,7 +5,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline base::detail {
 
 /// Aborts the program (host) or traps the kernel (device). A violated contract is a bug of gladstone, never an error of
 /// the user.
@@ -19,13 +19,14 @@ GLADSTONE_HD inline void contract_violated(char const* kind, char const* conditi
 #endif
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline base::detail
 
 /// Checks a precondition of a function, in every build, on host and device. Not for code that runs once per integration
 /// step.
 #define GLADSTONE_EXPECTS(condition) \
-  ((condition) ? (void)0 : ::gladstone::detail::contract_violated("precondition", #condition, __FILE__, __LINE__))
+  ((condition) ? (void)0 : ::gladstone::base::detail::contract_violated("precondition", #condition, __FILE__, __LINE__))
 
 /// Checks a postcondition of a function, in every build, on host and device.
 #define GLADSTONE_ENSURES(condition) \
-  ((condition) ? (void)0 : ::gladstone::detail::contract_violated("postcondition", #condition, __FILE__, __LINE__))
+  ((condition) ? (void)0             \
+               : ::gladstone::base::detail::contract_violated("postcondition", #condition, __FILE__, __LINE__))

@@ -5,7 +5,7 @@
 #include <new>
 #include <string_view>
 
-namespace gladstone {
+namespace gladstone::inline base {
 namespace {
 
 std::string joined(std::vector<SetupProblem> const& problems, std::size_t more) {
@@ -103,4 +103,4 @@ std::string format_user_message(std::exception const& error) {
          "); try other inputs, and report this error with the command line";
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Kind of an error. `code` in the JSON of --json and of the Python exceptions is its name; docs/reference/errors.md
 /// lists them.
@@ -141,4 +141,4 @@ bool is_out_of_memory(std::exception const& error);
 /// libraries are put into a sentence that says what failed and what to do.
 std::string format_user_message(std::exception const& error);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

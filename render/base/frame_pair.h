@@ -4,7 +4,7 @@
 
 #include "render/base/image.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Frame A (BOS: the reference image) and frame B (BOS: the measurement image), of equal size, in host memory.
 template <class Pixel>
@@ -34,4 +34,4 @@ class HostFrames final : public StoredFrames {
   FramePair<double> levels_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

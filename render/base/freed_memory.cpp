@@ -2,7 +2,7 @@
 
 #include <malloc.h>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 void keep_freed_memory() {
 #if defined(M_MMAP_THRESHOLD) && defined(M_TRIM_THRESHOLD)
@@ -11,4 +11,4 @@ void keep_freed_memory() {
 #endif
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -7,7 +7,7 @@
 #include "render/base/contracts.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Nodes and weights of n-point Gauss-Legendre quadrature on [-1, 1], exact for polynomials of degree 2 n - 1
 /// (Abramowitz & Stegun 25.4.29). The nodes are computed by Newton's method from the start values cos(pi (i + 3/4) / (n
@@ -39,4 +39,4 @@ struct GaussLegendre {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -5,7 +5,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Row-major image: column x to the right, row y downwards, pixel centres at integer coordinates from 0.
 template <class T>
@@ -36,4 +36,4 @@ class Image {
   std::vector<T> pixels_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -7,7 +7,7 @@
 
 #include "render/base/frame_pair.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Kind of the samples of an array.
 enum class SampleKind { boolean, unsigned_integer, signed_integer, floating_point };
@@ -52,4 +52,4 @@ bool visit_sample_type(ImageSamples const& image, Visit const& visit) {
   return false;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

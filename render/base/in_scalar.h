@@ -2,7 +2,7 @@
 
 #include "render/base/pose.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Converts a vector or pose to another scalar type U. With U = ceres::Jet, results computed from it carry their
 /// derivatives. Host code only.
@@ -15,4 +15,4 @@ Pose<U> in_scalar(Pose<T> const& pose) {
   return {in_scalar<U>(pose.origin), in_scalar<U>(pose.x), in_scalar<U>(pose.y), in_scalar<U>(pose.z)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -7,7 +7,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 namespace {
 
 std::atomic<bool> interrupted{false};
@@ -42,4 +42,4 @@ void throw_if_interrupted() {
   if (interrupted.load(std::memory_order_relaxed)) throw Interrupted();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Installs handlers for SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal; ignored under nohup) that set a flag for
 /// throw_if_interrupted(). A second Ctrl-C ends the process immediately; the next run removes its temporary files. Also
@@ -16,4 +16,4 @@ void clear_interrupt();
 /// Throws Interrupted if the user has asked to stop. The cost is one atomic load.
 void throw_if_interrupted();
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

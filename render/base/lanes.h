@@ -7,7 +7,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// SIMD vector of N numbers, for sums of products over the rows of an interpolation stencil. The general version is
 /// plain loops; with AVX2, four doubles are one vector register (vector type of GCC and clang), with the same
@@ -118,4 +118,4 @@ GLADSTONE_HD void scalar_products(Lanes<T, N> const (&row)[4], Lanes<T, N> const
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

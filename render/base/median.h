@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Standard deviation of a normal distribution over its median absolute deviation [1].
 inline constexpr double sigma_per_median_deviation = 1.4826;
@@ -17,4 +17,4 @@ inline double upper_median(std::vector<double> values) {
   return *middle;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <utility>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   // Rows of the distance table for the prefixes of `a` of length i - 2, i - 1 and i.
@@ -76,4 +76,4 @@ std::string quoted_list(std::vector<std::string> const& words) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Computes the optimal string alignment distance: the smallest number of insertions, deletions, replacements and swaps
 /// of adjacent characters that turn `a` into `b` (Damerau, Comm. ACM 7 (1964) 171).
@@ -25,4 +25,4 @@ std::vector<std::string> nearest_names(std::string_view word, std::vector<std::s
 /// Joins words for a message: `"a", "b" or "c"`.
 std::string quoted_list(std::vector<std::string> const& words);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -6,7 +6,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Variant over a closed set of types, for lists of optical elements. If all types are trivially copyable, so is OneOf
 /// (unlike std::variant), which allows copies to a device; a visit is a chain of comparisons that the compiler can
@@ -72,4 +72,4 @@ requires(!(std::is_trivially_copyable_v<First> && (std::is_trivially_copyable_v<
   std::variant<First, Rest...> held_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -13,7 +13,7 @@
 
 #include "render/base/interrupt.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 namespace {
 
 int configured_threads = 0;
@@ -97,4 +97,4 @@ void parallel_chunks(std::size_t count, std::size_t grain,
   });
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

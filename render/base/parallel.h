@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Sets the number of threads for parallel work; 0 or less: all cores. Called once, at start-up.
 void set_thread_count(int threads);
@@ -18,4 +18,4 @@ void parallel_for(std::size_t count, std::function<void(std::size_t)> const& bod
 void parallel_chunks(std::size_t count, std::size_t grain,
                      std::function<void(std::size_t begin, std::size_t end)> const& body);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

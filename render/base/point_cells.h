@@ -10,7 +10,7 @@
 #include "render/base/contracts.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Points of the plane sorted into square cells, for neighbour searches in constant time. Points that are not finite
 /// are excluded. The order in which neighbours are visited depends only on the points.
@@ -85,4 +85,4 @@ class PointCells {
   std::vector<std::uint32_t> sorted_;  // point indices
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

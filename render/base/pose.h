@@ -4,7 +4,7 @@
 #include "render/base/ray.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Position and orientation of an object in an outer frame, as the origin and axes of its right-handed local frame.
 template <class T>
@@ -74,4 +74,4 @@ Pose<T> Pose<T>::turned(Vec3<T> angles) const {
   return pose;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-namespace gladstone {
+namespace gladstone::inline base {
 namespace {
 
 bool enabled = true;
@@ -87,4 +87,4 @@ void Progress::draw(std::size_t done, bool last) {
   drawn_ = true;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

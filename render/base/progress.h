@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Receives the progress reports of one thread (see Scope) in place of stderr. Other threads may read them at any time.
 class ProgressMonitor {
@@ -73,4 +73,4 @@ class Progress {
   ProgressMonitor* monitor_ = nullptr;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

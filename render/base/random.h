@@ -4,7 +4,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Independent random streams of a case. Each random number is a function of its key (seed, stream, source, ray), not
 /// of the order of calls, so that runs repeat on any number of threads and on either device.
@@ -60,4 +60,4 @@ class KeyedEngine {
   std::uint64_t key_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

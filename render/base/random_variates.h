@@ -5,7 +5,7 @@
 #include "render/base/random.h"
 
 /// Random variates from a KeyedEngine; host and device results differ at most by the rounding of log and cos.
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Returns a normal variate of mean 0 and standard deviation 1 (Box & Muller 1958).
 GLADSTONE_HD inline double normal_variate(KeyedEngine& engine) {
@@ -17,4 +17,4 @@ GLADSTONE_HD inline double normal_variate(KeyedEngine& engine) {
   return radius * cos(two_pi * to_unit(engine()));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

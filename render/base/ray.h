@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Outcome of tracing a ray. Rays that fail are counted and reported; no exception is thrown.
 enum class RayStatus : int {
@@ -31,4 +31,4 @@ struct Ray {
   Vec3<T> direction;  ///< unit vector
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

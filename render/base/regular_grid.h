@@ -5,7 +5,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Regular grid of nodes in the world frame; node i of an axis is at origin + i spacing.
 struct RegularGrid {
@@ -20,4 +20,4 @@ struct RegularGrid {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -4,7 +4,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Number of dimensions of the Sobol sequence.
 inline constexpr int sobol_dimensions = 4;
@@ -94,4 +94,4 @@ GLADSTONE_HD inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t s
   return detail::reverse_bits(detail::scramble_digits(detail::reverse_bits(x), seed));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

@@ -7,7 +7,7 @@
 #include "render/base/sobol.h"
 
 /// Order of the points of a scrambled Sobol sequence in which neighbours in the first two dimensions are adjacent.
-namespace gladstone {
+namespace gladstone::inline base {
 
 namespace detail {
 
@@ -83,4 +83,4 @@ GLADSTONE_HD inline std::uint32_t ordered_point(std::uint32_t place, std::uint32
   return low | (detail::multiply_by_pascal(rest & angles) << r);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

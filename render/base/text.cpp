@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 std::string_view trim(std::string_view text) {
   constexpr std::string_view blanks(" \t\r\n\v\f\0", 7);
@@ -27,4 +27,4 @@ std::string excerpt(std::string_view text, std::size_t longest) {
   return std::string(text.substr(0, end)) + "...";
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

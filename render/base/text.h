@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Returns the part of a text between its first and last characters that are neither white space nor NUL (Fortran
 /// programs pad with either). It is valid as long as the text.
@@ -18,4 +18,4 @@ std::string lower_case(std::string_view text);
 /// Shortens a text to `longest` bytes for a message, ending in "..." if it was cut.
 std::string excerpt(std::string_view text, std::size_t longest = 60);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

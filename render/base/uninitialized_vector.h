@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Allocator that default-initialises new elements, so that numbers are left uninitialised.
 template <class T>
@@ -27,4 +27,4 @@ struct UninitializedAllocator : std::allocator<T> {
 template <class T>
 using UninitializedVector = std::vector<T, UninitializedAllocator<T>>;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

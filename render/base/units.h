@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 inline constexpr double pi = 3.14159265358979323846;
 
@@ -24,4 +24,4 @@ inline constexpr double speed_of_light = 299792458.0;
 inline constexpr double planck = 6.62607015e-34;
 }  // namespace constant
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

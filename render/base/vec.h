@@ -4,7 +4,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Vector of two components, in the units of its user. Trivially copyable for use in device code.
 template <class T>
@@ -73,4 +73,4 @@ using Vec3d = Vec3<double>;
 
 inline bool is_finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

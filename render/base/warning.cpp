@@ -4,7 +4,7 @@
 #include <array>
 #include <iterator>
 
-namespace gladstone {
+namespace gladstone::inline base {
 namespace {
 
 /// Names of the codes, in their order.
@@ -37,4 +37,4 @@ Warning at_place(std::string const& outer, Warning warning) {
   return warning;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

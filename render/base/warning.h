@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline base {
 
 /// Kind of a warning. `code` in the JSON of --json and of the Python warnings is its name; docs/reference/errors.md
 /// lists them.
@@ -52,4 +52,4 @@ std::vector<std::string> to_strings(Warnings const& warnings);
 /// Returns a warning with another place, which precedes the previous one: "OUTER: PLACE".
 Warning at_place(std::string const& outer, Warning warning);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline base

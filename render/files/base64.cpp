@@ -2,7 +2,7 @@
 
 #include <openssl/evp.h>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 std::string base64(std::string_view bytes) {
   std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP_EncodeBlock also writes a terminating zero
@@ -13,4 +13,4 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Formats a hash as 16 hexadecimal digits.
@@ -31,4 +31,4 @@ std::string file_hash(std::string const& path) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Computes the XXH64 hash (Collet) of the bytes as 16 hexadecimal digits. It detects accidental changes, truncation
 /// and damage, but gives no protection against forgery.
@@ -14,4 +14,4 @@ std::string content_hash(std::string_view bytes);
 /// @throws DataError if the file cannot be read
 std::string file_hash(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

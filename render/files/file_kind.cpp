@@ -12,7 +12,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/input_guard.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 using namespace std::string_view_literals;
@@ -109,4 +109,4 @@ std::string file_kind(std::string const& path, std::string const& name) {
   return kind_of_table(bytes);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Result of file_kind() for an HDF5 file that cannot be read.
 inline constexpr char const* damaged_hdf5 = "damaged HDF5";
@@ -17,4 +17,4 @@ inline constexpr char const* damaged_hdf5 = "damaged HDF5";
 std::string file_kind(std::string const& path, std::string const& name);
 inline std::string file_kind(std::string const& path) { return file_kind(path, path); }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

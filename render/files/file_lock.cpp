@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 struct flock range_of(std::size_t first, std::size_t count, short type) {
@@ -52,4 +52,4 @@ int find_lock(int file, std::size_t first, std::size_t count) {
   return range.l_type == F_UNLCK ? 0 : EAGAIN;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

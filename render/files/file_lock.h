@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Locks a byte range of an open file exclusively, without waiting (fcntl, F_OFD_SETLK). The lock belongs to the open
 /// file description: the system releases it when the process ends for whatever reason, so that no stale locks remain.
@@ -24,4 +24,4 @@ void unlock_bytes(int file, std::size_t first, std::size_t count);
 /// @return as lock_bytes()
 int find_lock(int file, std::size_t first, std::size_t count);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -8,7 +8,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 bool is_decimal_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -57,4 +57,4 @@ bool is_naturally_before(std::string const& a, std::string const& b) {
   return a < b;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -19,7 +19,7 @@
 #include "render/files/output_file.h"
 #include "render/files/stop_point.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -239,4 +239,4 @@ void complete_replacement(std::string const& folder, FolderContent const& conten
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

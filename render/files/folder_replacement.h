@@ -5,7 +5,7 @@
 
 #include "render/files/partial.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Files of an output directory that belong together and are replaced together.
 struct FolderContent {
@@ -54,4 +54,4 @@ bool is_complete(std::string const& folder, FolderContent const& content);
 /// Returns true if a directory entry's name is that of a running replacement or of a partial directory for one.
 bool belongs_to_replacement(std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <span>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 void Hdf5Axes::write_numbers(std::string const& axis, std::size_t size, std::string const& description) {
   std::vector<std::int64_t> numbers(size);
@@ -12,4 +12,4 @@ void Hdf5Axes::write_numbers(std::string const& axis, std::size_t size, std::str
   file_.write(axis, std::span<std::int64_t const>(numbers), {size}, "1", description, axis.substr(axis.rfind('/') + 1));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

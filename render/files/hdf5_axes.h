@@ -6,7 +6,7 @@
 
 #include "render/files/hdf5_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// The named axes of the datasets of a file. netCDF-4 and xarray show them as dimensions, with the coordinates if there
 /// are any.
@@ -28,4 +28,4 @@ class Hdf5Axes {
   std::vector<ScaledDataset> scaled_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

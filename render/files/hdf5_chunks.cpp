@@ -12,7 +12,7 @@
 #include <span>
 #include <utility>
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Entropy of the distribution of bytes above which they are stored without compression [bits]. Coding symbols by their
@@ -140,4 +140,4 @@ std::vector<DeflatedChunk> ChunkDeflater::deflate(void const* data, std::vector<
   return chunks;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

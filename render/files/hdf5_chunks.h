@@ -5,7 +5,7 @@
 
 /// Compression of datasets as by HDF5's filters "shuffle" and "deflate". It does not call the HDF5 library, which
 /// serves one thread at a time.
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Compression level of deflate. Only the leading bytes of measured numbers are compressible, so that higher levels
 /// take 1.3 times as long for files that are 1 % smaller.
@@ -44,4 +44,4 @@ class ChunkDeflater {
   std::vector<Known> known_;  ///< datasets of one chunk that have been compressed
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 
 #include "render/files/source_files.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Provenance of an HDF5 file of gladstone, stored as root attributes.
 struct FileOrigin {
@@ -128,4 +128,4 @@ class Hdf5Writer {
   std::unique_ptr<Handle> handle_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -15,7 +15,7 @@
 #include "render/files/hdf5_handle.h"
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 using namespace hdf5;
 namespace {
 
@@ -519,4 +519,4 @@ std::vector<double> Hdf5Reader::number_attribute(std::string const& dataset, std
   return values;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -15,7 +15,7 @@
 #include "render/files/hdf5_objects.h"
 #include "render/files/output_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 using namespace hdf5;
 
 /// State of a file being written. The content of an in-memory file is retained until close() writes it to disk, with
@@ -234,4 +234,4 @@ void Hdf5Writer::close() {
   handle_.reset();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -11,7 +11,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 constexpr char const* library_name = "libgladstone_image_codecs.so";
@@ -76,4 +76,4 @@ ImageCodecs const& image_codecs() {
   return codecs;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -8,7 +8,7 @@
 /// Interface of image readers, and of the shared library gladstone_image_codecs. OpenImageIO loads about 250 other
 /// libraries; a separate library avoids this in programs that read and write no other images than TIFFs (tiff_file.h).
 /// The functions of that library do not throw.
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Type of a sample in memory.
 enum class SampleType { other, uint8, uint16, int16, uint32, int32, float32, float64 };
@@ -80,4 +80,4 @@ inline constexpr char const* image_codecs_entry = "gladstone_image_codecs_3";
 /// Type of this function.
 using ImageCodecsEntry = ImageCodecs const* (*)();
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// First line of the ImageDescription written by gladstone, "# gladstone image, bit_depth = 12, pixel_pitch_m = 1e-05".
@@ -50,4 +50,4 @@ ImageMetadata metadata_of(PageHeader const& header) {
   return metadata;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

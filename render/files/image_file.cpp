@@ -20,7 +20,7 @@
 #include "render/files/output_file.h"
 #include "render/files/tiff_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Opens an image by the image codecs. An error in loading them names the image that requires them.
@@ -215,4 +215,4 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
   file.commit();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

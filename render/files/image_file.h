@@ -6,7 +6,7 @@
 
 #include "render/base/image.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Metadata of an image file.
 struct ImageMetadata {
@@ -41,4 +41,4 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
 /// Encodes an image as an 8-bit grey PNG.
 std::string encode_png(Image<std::uint8_t> const& image);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -12,7 +12,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Upper limit on the compression ratio of an image: above 1032 for deflate (2 bits for a run of 258 bytes) and 1365
@@ -182,4 +182,4 @@ Image<double> read_grey_levels(PageReader& input, std::string const& path, std::
   return turn_upright(read_levels(input, path), spec.orientation);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

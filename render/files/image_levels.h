@@ -6,7 +6,7 @@
 #include "render/base/image.h"
 #include "render/files/image_codecs.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Reads the current page of an image file as grey levels, upright.
 /// @param path        for errors
@@ -14,4 +14,4 @@ namespace gladstone {
 /// @throws DataError for a damaged page, and for channels that are neither grey levels nor colours
 Image<double> read_grey_levels(PageReader& input, std::string const& path, std::uint64_t file_bytes);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

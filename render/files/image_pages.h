@@ -9,7 +9,7 @@
 #include "render/files/image_file.h"
 
 /// Image files of several pages, such as the frames of a recording.
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Location of a page in its file.
 struct PageLocation {
@@ -44,4 +44,4 @@ class ImagePages {
   bool is_cut_short_ = false;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

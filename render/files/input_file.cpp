@@ -13,7 +13,7 @@
 #include "render/base/interrupt.h"
 #include "render/files/input_guard.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 [[noreturn]] void not_opened(std::string const& path, int error) {
@@ -84,4 +84,4 @@ std::size_t InputFile::read(std::uint64_t offset, void* to, std::size_t size) co
   return done;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

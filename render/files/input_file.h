@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Regular file open for reading; all files named by the user are opened by this class. Directories, pipes, devices and
 /// sockets are refused before they are opened, so that no read blocks or never ends.
@@ -37,4 +37,4 @@ class InputFile {
 /// Throws DataError if InputFile cannot open the file; to be called before a library opens a file by name.
 inline void require_input_file(std::string const& path, std::string const& wanted) { InputFile(path, wanted); }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

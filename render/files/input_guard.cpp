@@ -12,7 +12,7 @@
 #include "render/base/error.h"
 #include "render/files/folder_replacement.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 using FileId = std::pair<dev_t, ino_t>;
@@ -103,4 +103,4 @@ void refuse_protected_file(std::string const& path, std::string const& asked) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

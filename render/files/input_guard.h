@@ -5,7 +5,7 @@
 
 struct stat;
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Files of a folder of results that only the command which makes the folder may write.
 struct ProtectedFiles {
@@ -64,4 +64,4 @@ void refuse_recorded_input(std::string const& path, std::string const& asked);
 /// @throws OutputError if the file is protected and no ProtectedWritePermit exists in this thread
 void refuse_protected_file(std::string const& path, std::string const& asked);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

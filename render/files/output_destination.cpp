@@ -9,7 +9,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,4 +104,4 @@ void refuse_inputs_as_outputs(std::vector<std::string> const& outputs, std::vect
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Destination of an output: its absolute path with all links resolved, and the parent directories created for it.
 class OutputDestination {
@@ -41,4 +41,4 @@ std::string special_file(std::string const& path);
 /// @throws OutputError naming both
 void refuse_inputs_as_outputs(std::vector<std::string> const& outputs, std::vector<std::string> const& inputs);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

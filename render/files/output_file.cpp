@@ -13,7 +13,7 @@
 #include "render/files/input_guard.h"
 #include "render/files/stop_point.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ void OutputFile::write_text(std::string const& path, std::string const& text) {
   file.commit();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -7,7 +7,7 @@
 #include "render/files/output_destination.h"
 #include "render/files/partial.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Output file that is written under a temporary name (Partial) and renamed when complete: no incomplete file is ever
 /// visible, and an interrupted write preserves the old file. The destructor removes an uncommitted file; temporary
@@ -47,4 +47,4 @@ class OutputFile {
 /// Flushes a file, or a directory's entries, to disk. @return 0 or errno
 int flush_to_disk(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

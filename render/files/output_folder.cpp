@@ -13,7 +13,7 @@
 #include "render/files/input_guard.h"
 #include "render/files/output_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,4 +120,4 @@ void OutputFolder::commit() {
   committed_ = true;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -8,7 +8,7 @@
 #include "render/files/output_destination.h"
 #include "render/files/partial.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Output directory of files that belong together: either all of them exist or none. A new directory is built under a
 /// temporary name next to its final place and renamed when complete. An existing directory is retained (it may be a
@@ -44,4 +44,4 @@ class OutputFolder {
   bool committed_ = false;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

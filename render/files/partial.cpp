@@ -22,7 +22,7 @@
 #include "render/files/content_hash.h"
 #include "render/files/file_lock.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ void report_final_path(std::string const& staged, std::string const& place, std:
   throw OutputError(place + error.place().substr(staged.size()), error.message());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

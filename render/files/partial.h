@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Incomplete output: a hidden file or directory whose name identifies the writing process (host, boot, disk, process
 /// id and a random number), locked (file_lock.h) while the process runs. A directory contains the lock in a file
@@ -74,4 +74,4 @@ bool is_partial(std::string const& name, std::string const& stem);
 /// Calls `write`; an OutputError about a path below `staged` is rethrown about the same path below `place`.
 void report_final_path(std::string const& staged, std::string const& place, std::function<void()> const& write);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

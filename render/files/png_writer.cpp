@@ -7,7 +7,7 @@
 
 #include "render/files/image_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Returns a number of 32 bits, the most significant byte first.
@@ -53,4 +53,4 @@ std::string encode_png(Image<std::uint8_t> const& image) {
          png_chunk("IDAT", compressed(rows)) + png_chunk("IEND", "");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 struct Sha256::Context {
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> digest{EVP_MD_CTX_new(), EVP_MD_CTX_free};
@@ -40,4 +40,4 @@ std::string Sha256::finish() {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

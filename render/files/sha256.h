@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Incremental SHA-256 hash (FIPS 180-4). Results identify their input files by it; where detecting changes is
 /// sufficient, content_hash() is faster and shorter.
@@ -26,4 +26,4 @@ class Sha256 {
   std::unique_ptr<Context> context_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

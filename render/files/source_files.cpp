@@ -11,7 +11,7 @@
 #include "render/files/input_file.h"
 #include "render/files/sha256.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are hashed as stored in memory");
@@ -157,4 +157,4 @@ void SourceFiles::check() const {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -6,7 +6,7 @@
 
 #include "render/base/image.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Computes the SHA-256 hash of an image's content: columns, rows, bits per stored sample and the grey levels as
 /// returned by read_image(); dates, names and other metadata are excluded. If all grey levels are integers from 0 to
@@ -66,4 +66,4 @@ class SourceFiles {
   std::string advice_ = "run the command again";
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 struct WantedStop {
@@ -30,4 +30,4 @@ void stop_point(char const* name) {
   if (wanted.name == name && ++passes == wanted.pass) ::raise(SIGSTOP);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Environment variable that selects a stop point: "NAME", or "NAME:3" for the third time that it is reached.
 inline constexpr char const* stop_variable = "GLADSTONE_STOP_AT";
@@ -9,4 +9,4 @@ inline constexpr char const* stop_variable = "GLADSTONE_STOP_AT";
 /// command at a defined point. CONTRIBUTING.md lists the points.
 void stop_point(char const* name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -10,7 +10,7 @@
 #include "render/base/text.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 std::optional<double> assigned_number(std::string_view text, std::string_view key) {
   constexpr std::string_view blanks = " \t\r";
@@ -72,4 +72,4 @@ std::vector<std::size_t> BlockValues::lines(std::size_t points) const {
   return {line_.begin(), line_.begin() + static_cast<std::ptrdiff_t>(points)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

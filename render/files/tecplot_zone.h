@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Returns the number in KEY=NUMBER or KEY = NUMBER outside of quotation marks, ignoring case.
 /// @param key  in lower case; must not be preceded by a letter, digit or underscore
@@ -44,4 +44,4 @@ class BlockValues {
   std::vector<std::size_t> line_;  ///< line number of each value
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

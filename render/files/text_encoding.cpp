@@ -4,7 +4,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 void append_utf8(std::string& text, std::uint32_t point) {
@@ -107,4 +107,4 @@ std::string decoded_text(std::string_view bytes, std::string const& name) {
   return with_plain_line_ends(text);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

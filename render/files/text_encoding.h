@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Returns true if the bytes are well-formed UTF-8, as JSON and TOML require (RFC 3629: no surrogates, no overlong
 /// forms).
@@ -15,4 +15,4 @@ bool is_utf8(std::string_view bytes);
 /// @throws DataError for malformed or truncated UTF-16, and for text with NUL characters
 std::string decoded_text(std::string_view bytes, std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

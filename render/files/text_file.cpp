@@ -6,7 +6,7 @@
 
 #include "render/files/text_encoding.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 constexpr std::size_t most_line_bytes = std::size_t{1} << 20;
@@ -83,4 +83,4 @@ std::optional<std::string_view> LineReader::next() {
 
 std::string LineReader::place() const { return file_.path() + ':' + std::to_string(number_); }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

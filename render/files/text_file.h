@@ -11,7 +11,7 @@
 #include "render/base/text.h"
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Maximum size of a setup or study file [bytes]; enough for lists of a million values.
 inline constexpr std::uint64_t most_setup_bytes = std::uint64_t{32} << 20;
@@ -66,4 +66,4 @@ void require_room(std::vector<Row> const& rows, std::string const& path, std::st
                  3.0 * static_cast<double>(rows.size() * sizeof(Row)));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 #include "render/files/input_file.h"
 
 /// TIFF files through libtiff, without the 250 libraries that OpenImageIO loads.
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Reader of a TIFF.
 class TiffPageReader : public PageReader {
@@ -52,4 +52,4 @@ struct GreyPage {
 /// @throws OutputError if libtiff fails, std::bad_alloc
 std::vector<unsigned char> encode_tiff(std::string const& path, GreyPage const& page);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Returns the first value of an entry, its default, or `otherwise` if it has no default.
@@ -166,4 +166,4 @@ PageHeader read_tiff_header(tiff* handle, TiffLayout const& layout) {
   return header;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -6,7 +6,7 @@
 #include "render/files/tiff_stream.h"
 
 /// Helpers of tiff_reader.cpp; not for other files.
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Storage of the samples of one TIFF page in blocks (tiles or strips). A block has whole rows of packed samples, each
 /// row beginning at a byte.
@@ -32,4 +32,4 @@ TiffLayout read_tiff_layout(tiff* handle);
 /// Returns the header of the current page. White is the larger value, whatever the page says.
 PageHeader read_tiff_header(tiff* handle, TiffLayout const& layout);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -10,7 +10,7 @@
 #include "render/files/tiff_layout.h"
 #include "render/files/tiff_stream.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 constexpr std::uint32_t bits_in_byte = 8;
@@ -244,4 +244,4 @@ std::string describe_tiff_samples(InputFile const& file) {
                      compression);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 void TiffCloser::operator()(tiff* handle) const { TIFFClose(handle); }
 
@@ -91,4 +91,4 @@ std::string TiffStream::check_error() {
   return error;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

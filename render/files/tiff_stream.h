@@ -9,7 +9,7 @@
 struct tiff;  // TIFF of <tiffio.h>
 
 /// Helpers shared by the files that call libtiff, tiff_reader.cpp and tiff_writer.cpp; not for other files.
-namespace gladstone {
+namespace gladstone::inline files {
 
 struct TiffCloser {
   void operator()(tiff* handle) const;
@@ -49,4 +49,4 @@ class TiffStream {
   std::exception_ptr exception_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -7,7 +7,7 @@
 #include "render/files/tiff_file.h"
 #include "render/files/tiff_stream.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Image size from which BigTIFF is written, since offsets of 32 bits do not suffice [bytes].
@@ -98,4 +98,4 @@ std::vector<unsigned char> encode_tiff(std::string const& path, GreyPage const& 
   return stream.release();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

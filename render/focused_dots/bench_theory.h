@@ -4,7 +4,7 @@
 #include "render/scene/theory.h"
 
 /// Small-angle theory (Eq. 9) for a thin lens on the Z axis, for which the projection is a single magnification.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Parameters that convert integrals along a dot's straight rays to theoretical displacements; the same for all dots.
 struct TheoryModel {
@@ -70,4 +70,4 @@ inline void set_theory(GroundTruth& truth, std::size_t dot, TheoryModel const& t
   truth.eq9_cone_px[dot] = theory.displacement(found.cone.lever_weighted / found.cone.weight, 1.0);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -4,7 +4,7 @@
 
 /// Ray tracing of a dot and the integral over its light cone, by a group of lanes: OneLane on the CPU, a block of
 /// threads on a GPU.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Results of a dot after its rays are traced and its light cone is integrated.
 struct DotCone {
@@ -211,4 +211,4 @@ GLADSTONE_HD void conclude(Group const& group, DotModel const& model, Vec2d orig
   found.left = dot.kind == DotKind::left;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

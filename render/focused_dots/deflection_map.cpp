@@ -8,7 +8,7 @@
 #include "render/focused_dots/dot_cone.h"
 #include "render/focused_dots/one_lane.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 namespace {
 
 constexpr double most_rays = 1e8;     // maximum number of rays of a table
@@ -209,4 +209,4 @@ DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionTableLayout cons
   table_ = layout.table.with(values);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -8,7 +8,7 @@
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Determines from the field and the view whether a deflection table can be built for a scene's dots. Returns `made` if
 /// it can, else the reason why not.
@@ -91,4 +91,4 @@ class DeflectionTableCache {
   std::unique_ptr<Map> map_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -7,7 +7,7 @@
 #include "render/base/ray.h"
 #include "render/medium/trace_medium.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Set-up whose lens images the target sharply: wherever a ray passes the lens, it lands on the image of its apparent
 /// point of origin on the target.
@@ -286,4 +286,4 @@ GLADSTONE_HD void trace_ray_group(Four const& four, FocusedSetupView const& benc
   out.shift_slopes[node[0]] = shift;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -4,7 +4,7 @@
 #include "render/base/vec.h"
 
 /// Distribution of displacements over a dot's light cone, and its variation over the area of the dot.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Moments of a distribution of displacements about an origin up to fourth order: sums of weight x^a y^b.
 struct DisplacementMoments {
@@ -74,4 +74,4 @@ struct MomentField {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -9,7 +9,7 @@
 /// Light cone of a dot: the deflection table provides the deflection of each ray, and a few traced rays correct it. The
 /// integrals over the cone are then as accurate as their cubature rule, which resolves waves of three times the field's
 /// finest length, in cones up to a few hundred of these lengths wide.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Node of a cone's cross-section, on rings that share their directions.
 struct ConePoint {
@@ -261,4 +261,4 @@ GLADSTONE_HD inline ConeLight cone_light(CorrectedCone const& cone, ConeRule con
           at.weight * cone.lambert(offset, (at.radius * cone.stop_radius()) * direction)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -2,7 +2,7 @@
 
 #include "render/focused_dots/narrow_light.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 DotIntegrator::DotIntegrator(DotModel const& model) : model_(model) {
   SpotView spot;
@@ -45,4 +45,4 @@ void DotIntegrator::accumulate_light_by_points(std::size_t frame, Vec2d moved) {
   });
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

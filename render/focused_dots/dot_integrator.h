@@ -5,7 +5,7 @@
 #include "render/focused_dots/dot_patch.h"
 #include "render/focused_dots/square_light.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 struct RenderedDot : DotCone, DotFound {
   double largest_aim_distance = 0;  ///< largest distance of an aim point from the axis, see DotAim::farthest [m]
@@ -69,4 +69,4 @@ class DotIntegrator {
   SquareSums<1> squares_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

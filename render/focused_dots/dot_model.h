@@ -8,7 +8,7 @@
 #include "render/scene/spot.h"
 
 /// Computation of a dot's truth and light from its light cone, for all devices.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Method by which a dot is rendered.
 enum class DotKind : int {
@@ -175,4 +175,4 @@ struct DotRay {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -6,7 +6,7 @@
 #include "render/focused_dots/one_lane.h"
 #include "render/scene/light_patch.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Pixel buffer that also accumulates the light of narrow and wide dots.
 class DotPatch : public LightPatch {
@@ -49,4 +49,4 @@ class DotPatch : public LightPatch {
   std::vector<double> of_square_;  ///< light of one square of displacement
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

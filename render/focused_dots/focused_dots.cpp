@@ -5,7 +5,7 @@
 
 #include "render/focused_dots/deflection_map.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 FocusedSetupView FocusedDots::bench() const {
   Setup const& setup = scene_->setup;
@@ -37,7 +37,7 @@ std::string reason_against_focused_dots(Setup const& setup) {
   return "";
 }
 
-std::optional<FocusedDots> focused_dots(Scene const& scene, RenderPlan const& plan) {
+std::optional<FocusedDots> build_focused_dots(Scene const& scene, RenderPlan const& plan) {
   constexpr int widest_spot = 22;  // [px] to either side; limit of DotPatch's row length
   if (!reason_against_focused_dots(scene.setup).empty()) return std::nullopt;
   if (GaussianSpot<double>{scene.spot_sigma_px()}.half_width() > widest_spot) return std::nullopt;
@@ -50,4 +50,4 @@ std::vector<MemoryRequirement> focused_dots_memory(Setup const& setup) {
   return {{"camera.pixels", "table of deflections", table_bytes_needed(setup)}};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

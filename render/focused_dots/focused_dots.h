@@ -7,13 +7,13 @@
 #include "render/focused_dots/bench_theory.h"
 #include "render/scene/render_plan.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Scene that the fast renderer supports: flat discs or squares in focus of an ideal thin lens with a stop, on and
 /// perpendicular to the axis, with a Gaussian PSF. Only then is the reference image known in closed form and a single
 /// deflection table valid for all dots (DotModel).
-/// Required as an argument by renderer and tables; created by focused_dots() only. Refers to the scene, which must
-/// outlive it, and to later changes of the scene's step and ray budget.
+/// Required as an argument by renderer and tables; created by build_focused_dots() only. Refers to the scene, which
+/// must outlive it, and to later changes of the scene's step and ray budget.
 class FocusedDots {
  public:
   Scene const& scene() const { return *scene_; }
@@ -24,7 +24,7 @@ class FocusedDots {
 
  private:
   FocusedDots(Scene const& scene, RenderPlan const& plan) : scene_(&scene), plan_(plan) {}
-  friend std::optional<FocusedDots> focused_dots(Scene const& scene, RenderPlan const& plan);
+  friend std::optional<FocusedDots> build_focused_dots(Scene const& scene, RenderPlan const& plan);
 
   Scene const* scene_;
   RenderPlan plan_;
@@ -36,10 +36,10 @@ std::string reason_against_focused_dots(Setup const& setup);
 /// Returns the scene for the fast renderer; nullopt if it is not supported. Besides the conditions of
 /// reason_against_focused_dots(), fields that are so fine compared with the view that the table would need too much
 /// time and memory, dots that are wide compared with the field's length scale, and too wide a PSF are not supported.
-std::optional<FocusedDots> focused_dots(Scene const& scene, RenderPlan const& plan = {});
+std::optional<FocusedDots> build_focused_dots(Scene const& scene, RenderPlan const& plan = {});
 
 /// Returns the memory requirements of the fast renderer beyond images, field and dots, for check_memory(), before
 /// anything is built.
 std::vector<MemoryRequirement> focused_dots_memory(Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

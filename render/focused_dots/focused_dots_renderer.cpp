@@ -11,7 +11,7 @@
 #include "render/focused_dots/owned_dot_model.h"
 #include "render/scene/shift_limit.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 namespace {
 
 template <class Medium>
@@ -66,7 +66,7 @@ void apply_polarity(Scene const& scene, FramePair<double>& light) {
 
 Rendering FocusedDotsRenderer::render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources,
                                       RenderImages images, RenderTheory theory) {
-  std::optional<FocusedDots> const dots = focused_dots(scene, plan);
+  std::optional<FocusedDots> const dots = build_focused_dots(scene, plan);
   GLADSTONE_EXPECTS(dots);
   Rendering rendering = render_within_table(scene, plan, [&](double largest_aim_distance) {
     DeflectionTable const table = deflections_.table(*dots, sources, largest_aim_distance);
@@ -106,4 +106,4 @@ Image<double> render_white_light(Scene const& scene) {
   return light;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

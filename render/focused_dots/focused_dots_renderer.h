@@ -5,14 +5,14 @@
 #include "render/focused_dots/deflection_map.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Fast renderer on the CPU. Dots whose light cone is not covered by the table, is folded, or loses rays in the medium
 /// are fallback dots (Rendering::left), without truth or light.
 class FocusedDotsRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
-  /// @pre focused_dots(scene)
+  /// @pre build_focused_dots(scene)
   Rendering render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, RenderImages images,
                    RenderTheory theory) override;
 
@@ -31,4 +31,4 @@ Rendering render_within_table(Scene const& scene, RenderPlan const& plan,
 /// same in both images, since radiance is conserved along rays.
 Image<double> render_white_light(Scene const& scene);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

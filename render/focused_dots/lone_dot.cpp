@@ -6,7 +6,7 @@
 #include "render/base/random.h"
 #include "render/scene/light_patch.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 namespace {
 
 /// Returns a scene with a single white dot.
@@ -20,7 +20,7 @@ Scene alone(Scene const& scene, Vec2d place) {
 }  // namespace
 
 LoneDot::LoneDot(FocusedDots const& all, Vec2d place, int side) : scene_(alone(all.scene(), place)), side_(side) {
-  FocusedDots const dots = focused_dots(scene_, all.plan()).value();
+  FocusedDots const dots = build_focused_dots(scene_, all.plan()).value();
   Vec2d const centre = scene_.dots.centre[0];
   double room = DeflectionTableLayout::default_aim_distance * scene_.imaging.entrance_pupil / 2;
   do {
@@ -108,4 +108,4 @@ void LoneDot::add_rays(Medium const& medium, std::size_t scrambling, int rays, R
   sample.rays = rays;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

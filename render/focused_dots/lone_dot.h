@@ -8,7 +8,7 @@
 #include "render/focused_dots/owned_dot_model.h"
 #include "render/scene/light_image.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Difference of a sample of rays from the rendering of a lone dot: displacement [px] and light of a pixel window in
 /// both images, the reference image first.
@@ -77,4 +77,4 @@ class LoneDot {
   Difference difference_[sample_count];
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -3,7 +3,7 @@
 #include "render/base/parallel.h"
 #include "render/focused_dots/one_lane.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 MomentImages MomentImages::plan(double half_px, GaussianSpot<double> const& spot, double side, int terms) {
   constexpr std::size_t most_bytes = std::size_t{64} << 20;
   MomentImages images;
@@ -32,4 +32,4 @@ std::vector<double> make_moment_images(MomentImages const& plan, CubatureView co
   return values;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -11,7 +11,7 @@
 /// and the light of each square is computed from a few moments (Hermite series, as in the fast Gauss transform of
 /// Greengard & Strain 1991). The squares' centres are on a lattice that subdivides the sensor's pixels, so that the
 /// image of a source for each moment is the same for all dots and is computed once.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Lattice of squares on the sensor. It is offset from the pixels by `aside`: dots of regular targets with zero
 /// displacement fall on pixel centres and edges, where different devices could otherwise round them into different
@@ -245,4 +245,4 @@ GLADSTONE_HD void add_to_images(Group const& group, MomentImages const& images, 
 std::vector<double> make_moment_images(MomentImages const& plan, CubatureView const& source, double half_px,
                                        GaussianSpot<double> const& spot);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

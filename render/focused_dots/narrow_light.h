@@ -5,7 +5,7 @@
 
 /// Image of a disc-shaped source, computed point by point by a group of lanes: OneLane on the CPU, a block of threads
 /// on a GPU.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Returns the size of a team's work space for one point [numbers].
 GLADSTONE_HD constexpr int point_numbers(int orders, int pitch) {
@@ -80,4 +80,4 @@ GLADSTONE_HD void accumulate_light_by_points(Group const& group, DotModel const&
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -2,7 +2,7 @@
 
 #include "render/base/interrupt.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Group of threads that process a dot together: on the CPU a single lane, which represents groups of all levels. On a
 /// device, a block of threads is divided into teams, each of which processes a point of the source rule or some points
@@ -73,4 +73,4 @@ void with_lanes(int width, Body const& body) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

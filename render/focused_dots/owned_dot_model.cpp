@@ -8,7 +8,7 @@
 #include "render/base/units.h"
 #include "render/optics/ray_bundle.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 namespace {
 
@@ -142,4 +142,4 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

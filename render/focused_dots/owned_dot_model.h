@@ -6,7 +6,7 @@
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/source_cubature.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Device on which the moment images are computed: the host, or another one, for which only MomentImages::plan() is
 /// called.
@@ -29,4 +29,4 @@ struct OwnedDotModel {
   OwnedDotModel& operator=(OwnedDotModel const&) = delete;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/sensor/diffraction_spot.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Computes the PSF factors of some points along both axes, like GaussianSpot::taylor_shares(), by a group of lanes. On
 /// a device, eight lanes process one axis of a point: they integrate the PSF up to the pixel edges, and the factor of a
@@ -56,4 +56,4 @@ GLADSTONE_HD void spot_factors(Group const& group, GaussianSpot<double> const& s
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

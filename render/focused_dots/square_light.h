@@ -4,7 +4,7 @@
 
 /// Light of a dot whose displacements are sorted into squares (MomentImages), computed by a group of lanes: OneLane on
 /// the CPU, a block of threads on a GPU.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Work space shared by a group's lanes.
 /// @tparam abreast  number of squares whose light is computed together
@@ -183,4 +183,4 @@ GLADSTONE_HD void accumulate_light_by_squares(Group const& group, DotModel const
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -12,7 +12,7 @@
 #include "render/focused_dots/lone_dot.h"
 #include "render/focused_dots/owned_dot_model.h"
 
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 namespace {
 
 constexpr std::size_t place_count = 16;
@@ -207,7 +207,7 @@ RenderPlan plan_rays_by_table(FocusedDots const& dots) {
   plan.rays = initial_table_rays;
   double last = std::numeric_limits<double>::infinity();
   while (true) {
-    TableError const error = measure_table_error(focused_dots(dots.scene(), plan).value());
+    TableError const error = measure_table_error(build_focused_dots(dots.scene(), plan).value());
     plan.table_error = error;
     if (error.excess() <= 1) return plan;
     if (plan.fineness == 1) {
@@ -220,4 +220,4 @@ RenderPlan plan_rays_by_table(FocusedDots const& dots) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

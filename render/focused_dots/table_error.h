@@ -5,7 +5,7 @@
 #include "render/scene/renderer.h"
 
 /// Error of truth and images due to the deflection table, and the number of rays per dot that correct it.
-namespace gladstone {
+namespace gladstone::inline focused_dots {
 
 /// Measures the errors of truth and images at the plan's number of rays and fineness.
 /// White dots at 16 positions spread over the view, independent of the scene's dots, are rendered with their own
@@ -37,4 +37,4 @@ double table_seconds(FocusedDots const& dots);
 /// docs/benchmarks.md.
 double dots_seconds(FocusedDots const& dots, RenderTheory theory);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline focused_dots

@@ -12,7 +12,7 @@
 #include "render/base/parallel.h"
 #include "render/ideal_images/draw_light.h"
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 namespace {
 
 constexpr std::size_t grain = 4096;  // particles or pixels that one task processes
@@ -144,4 +144,4 @@ std::unique_ptr<PairBatchRenderer> make_host_pair_batches(std::vector<OwnedPairM
   return std::make_unique<HostPairBatches>(std::move(models));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

@@ -5,7 +5,7 @@
 
 #include "render/ideal_images/pair_batch.h"
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 
 /// Checks that models can be rendered in one batch. @throws DataError if their frames differ in size
 void check_same_frames(std::vector<OwnedPairModel> const& models);
@@ -18,4 +18,4 @@ void check_seed_count(std::size_t models, std::size_t seeds);
 /// @throws DataError if the models cannot be rendered together
 std::unique_ptr<PairBatchRenderer> make_host_pair_batches(std::vector<OwnedPairModel> models);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 
 IdealProjection IdealImages::projection() const {
   CameraSetup const& camera = scene_->setup.camera;
@@ -58,9 +58,9 @@ std::string reason_against_ideal_images(Setup const& setup) {
   return "";
 }
 
-std::optional<IdealImages> ideal_images(Scene const& scene) {
+std::optional<IdealImages> build_ideal_images(Scene const& scene) {
   if (!reason_against_ideal_images(scene.setup).empty()) return std::nullopt;
   return IdealImages(scene);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

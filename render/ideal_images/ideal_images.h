@@ -9,14 +9,14 @@
 #include "render/ideal_images/particle_image.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 
 /// Scene whose particles have ideal images: in focus of an ideal thin lens with a stop, on and perpendicular to the
 /// axis, without other optical elements or medium, with a Gaussian PSF.
 /// The image of a particle is a Gaussian centred on its pinhole projection and integrated over pixels, as in other PIV
 /// image generators (Raffel et al. 2018, section 3; Lecordier & Westerweel 2004), without ray tracing. It is widened by
 /// the defocus due to the particle's depth in the sheet (DefocusBlur), which ParticleScattering::gaussian neglects: see
-/// largest_blur_px(). Created by ideal_images() only; refers to the scene, which must outlive it.
+/// largest_blur_px(). Created by build_ideal_images() only; refers to the scene, which must outlive it.
 class IdealImages {
  public:
   Scene const& scene() const { return *scene_; }
@@ -33,7 +33,7 @@ class IdealImages {
 
  private:
   explicit IdealImages(Scene const& scene) : scene_(&scene) {}
-  friend std::optional<IdealImages> ideal_images(Scene const& scene);
+  friend std::optional<IdealImages> build_ideal_images(Scene const& scene);
 
   Scene const* scene_;
 };
@@ -42,7 +42,7 @@ class IdealImages {
 std::string reason_against_ideal_images(Setup const& setup);
 
 /// Returns the scene for ideal images; nullopt if its particles do not have ideal images.
-std::optional<IdealImages> ideal_images(Scene const& scene);
+std::optional<IdealImages> build_ideal_images(Scene const& scene);
 
 /// Draws the images of particles on one device.
 class ImageDrawer {
@@ -63,4 +63,4 @@ class ImageDrawer {
 Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
                               RenderImages images, ImageDrawer* drawer = nullptr);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

@@ -6,7 +6,7 @@
 
 #include "render/ideal_images/pair_model.h"
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 
 /// Type of the grey levels of a batch.
 enum class LevelType {
@@ -35,4 +35,4 @@ class PairBatchRenderer {
   virtual void copy_to_host(void* to, DeviceBuffer const& from, std::size_t bytes) const = 0;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

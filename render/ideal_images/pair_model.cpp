@@ -14,7 +14,7 @@
 #include "render/scene/particle_scene.h"
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 
 static_assert(std::is_trivially_copyable_v<PairModel>);
 
@@ -100,7 +100,7 @@ std::string reason_against_scattering(Setup const& setup) {
     return "the diameters of every pair require another table of Mie scattering";
   Scene const scene = empty_scene(setup);
   double const error =
-      find_largest_blur(particles, laser_sheet(setup.piv->laser), ideal_images(scene).value().blur()).error;
+      find_largest_blur(particles, laser_sheet(setup.piv->laser), build_ideal_images(scene).value().blur()).error;
   if (error <= accurate_blur_error) return "";
   return fmt::format("defocus in the sheet blurs images so far that Gaussians deviate by {:.2g} % of the brightest one",
                      100 * error);
@@ -146,7 +146,7 @@ OwnedPairModel build_pair_model(Setup const& setup) {
   model.sheet = laser_sheet(setup.piv->laser);
   model.sheet_plane = scene.sheet_plane();
   model.lens = {scene.camera.aim_plane.origin, scene.camera.aim_plane.z, LensLight::area(scene.imaging.entrance_pupil)};
-  IdealImages const ideal = ideal_images(scene).value();
+  IdealImages const ideal = build_ideal_images(scene).value();
   model.projection = ideal.projection();
   model.blur = ideal.blur();
   model.spot = {find_largest_blur(particles, model.sheet, model.blur).sigma};
@@ -161,4 +161,4 @@ OwnedPairModel build_pair_model(Setup const& setup) {
   return {model, flow.owner, std::move(mie)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

@@ -15,7 +15,7 @@
 #include "render/sensor/diffraction_spot.h"
 #include "render/sensor/pixel_detector.h"
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 
 /// Choice of the exposure of a pair, equal to that of choose_exposure() for a scene.
 struct ExposureRule {
@@ -146,4 +146,4 @@ std::string reason_against_pair_model(Setup const& setup);
 /// @throws DataError if the setup has no PairModel, or its velocity file cannot be read
 OwnedPairModel build_pair_model(Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

@@ -6,7 +6,7 @@
 #include "render/base/vec.h"
 #include "render/scene/ideal_projection.h"
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 
 /// Particle's image in one frame: a Gaussian.
 struct ParticleImage {
@@ -53,4 +53,4 @@ inline constexpr double accurate_blur_error = 0.5 / 4095;
 /// Light, relative to the brightest image, below which the margins of blurred images may be cut off.
 inline constexpr double faint_image = 1e-4;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

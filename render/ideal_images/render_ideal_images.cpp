@@ -11,7 +11,7 @@
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
 
-namespace gladstone {
+namespace gladstone::inline ideal_images {
 namespace {
 
 constexpr int frames = 2;
@@ -181,4 +181,4 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
   return rendering;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline ideal_images

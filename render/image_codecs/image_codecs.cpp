@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace gladstone {
+namespace gladstone::inline image_codecs {
 namespace {
 
 SampleType sample_type(OIIO::TypeDesc const& type) {
@@ -217,7 +217,7 @@ class OiioCodecs final : public ImageCodecs {
 };
 
 }  // namespace
-}  // namespace gladstone
+}  // namespace gladstone::inline image_codecs
 
 extern "C" gladstone::ImageCodecs const* gladstone_image_codecs_3() {
   static gladstone::OiioCodecs const codecs;

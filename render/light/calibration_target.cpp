@@ -7,7 +7,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 constexpr double most_dots = 1e6;  // maximum number of dots per plane; on a sensor of 100 megapixels such dots are 10
@@ -67,4 +67,4 @@ std::vector<Vec2d> Lattice::dots() const {
   return places;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

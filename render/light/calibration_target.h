@@ -5,7 +5,7 @@
 #include "render/light/target_setup.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Table [calibration] of a setup, in SI: a square lattice of dots, recorded on several planes perpendicular to Z. The
 /// central dot is on the Z axis.
@@ -38,4 +38,4 @@ struct Lattice {
   std::vector<Vec2d> dots() const;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

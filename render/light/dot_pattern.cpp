@@ -12,7 +12,7 @@
 #include "render/files/image_file.h"
 #include "render/light/number_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 /// Grid of cells for finding overlapping discs. Cells are at least one diameter wide, so that a disc overlaps discs of
@@ -205,4 +205,4 @@ DotPattern image_target(std::string const& path, Vec2d extent) {
   return pattern;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -7,7 +7,7 @@
 #include "render/base/vec.h"
 #include "render/light/sources.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Light sources of a target, in the coordinates of the target plane. Owns the data of a SourcesView.
 struct DotPattern {
@@ -44,4 +44,4 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest);
 /// extent
 DotPattern image_target(std::string const& path, Vec2d extent);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

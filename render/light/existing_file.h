@@ -5,7 +5,7 @@
 
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Reads the key `file` of a table and checks that the file exists.
 inline std::string existing_file(SetupTable& table) {
@@ -17,4 +17,4 @@ inline std::string existing_file(SetupTable& table) {
   return file;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 template <class... Kinds>
@@ -67,4 +67,4 @@ bool velocity_known(FlowSetup const& setup, Vec3d place) {
   });
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -27,7 +27,7 @@
 #define GLADSTONE_FLOW_CALL
 #endif
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 template <class... Kinds>
 struct FlowKinds {};
@@ -84,4 +84,4 @@ Warnings load_flow(FlowSetup& setup);
 /// Returns false if a point [m] is outside the velocity field of a file, where the velocity is extrapolated.
 bool velocity_known(FlowSetup const& setup, Vec3d place);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -2,7 +2,7 @@
 
 #include "render/light/flow.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Velocity of small heavy particles in a steady flow, to first order in their response time tau: v = u - tau Du/Dt
 /// (Maxey, J. Fluid Mech. 174 (1987) 441; Ferry & Balachandar, Int. J. Multiphase Flow 27 (2001) 1199).
@@ -75,4 +75,4 @@ struct PathPlan {
   double lag_error = 0;  ///< largest displacement by the second-order term of the lag, which is neglected [m]
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -7,7 +7,7 @@
 #include "render/base/vec.h"
 #include "render/light/mie_scattering.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Scattering cross-sections of white diffuse spheres (Lambert's law, albedo 1) that are large compared with the
 /// wavelength. A view, owns no memory.
@@ -29,4 +29,4 @@ struct LambertSpheres {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

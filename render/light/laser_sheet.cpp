@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 /// Largest accepted |cosine| of the angle between sheet normal and laser direction; allows for rounded components [1].
@@ -72,4 +72,4 @@ LaserSheet<double> laser_sheet(LaserSetup const& setup) {
   return sheet;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -10,7 +10,7 @@
 #include "render/light/mie_scattering.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Intensity profile of a laser sheet along its normal.
 enum class SheetProfile : int {
@@ -87,4 +87,4 @@ struct LaserSheet {
 
 LaserSheet<double> laser_sheet(LaserSetup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

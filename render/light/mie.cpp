@@ -6,7 +6,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 using Complex = std::complex<double>;
@@ -137,4 +137,4 @@ void MieCoefficients::amplitudes(double const* angle, std::size_t count, MieAmpl
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

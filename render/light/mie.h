@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Range of size parameters x = pi d n / lambda for which the series is valid.
 inline constexpr double least_size_parameter = 1e-6, largest_size_parameter = 1e5;
@@ -61,4 +61,4 @@ class MieCoefficients {
 /// which reduces the relative error from 1e-10 to rounding.
 int mie_terms(double x);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

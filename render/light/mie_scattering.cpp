@@ -12,7 +12,7 @@
 #include "render/base/progress.h"
 #include "render/light/mie.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 /// Node spacing of a table, as phase [rad] of the fastest significant ripple of |S|^2, cos(2 x theta). The error of a
@@ -172,4 +172,4 @@ MieScattering::MieScattering(std::vector<double> const& diameters, MieSetting co
   });
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

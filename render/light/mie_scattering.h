@@ -10,7 +10,7 @@
 #include "render/base/units.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Plane wave incident on a particle.
 template <class T>
@@ -127,4 +127,4 @@ class MieScattering {
   std::vector<float> coefficients_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

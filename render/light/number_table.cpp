@@ -7,7 +7,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 NumberTable::NumberTable(std::string const& path, std::string const& wanted, std::vector<std::string> const& columns)
     : lines_(path, wanted), columns_(columns.size()) {
@@ -40,4 +40,4 @@ std::optional<std::vector<double>> NumberTable::next() {
   return row;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

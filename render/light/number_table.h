@@ -6,7 +6,7 @@
 
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Reader of a CSV file of numbers with one header line.
 class NumberTable {
@@ -31,4 +31,4 @@ class NumberTable {
   std::size_t columns_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -6,7 +6,7 @@
 #include "render/light/particle_setup.h"
 
 /// Random properties of one particle, as functions of the seed and the particle's index only, for host and device.
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Draws a diameter [m] from one of the closed-form distributions, always positive.
 /// @pre spread is not DiameterSpread::table
@@ -39,4 +39,4 @@ GLADSTONE_HD inline bool is_inside_box(Vec3d place, Vec3d center, Vec3d size) {
   return 2 * abs(from.x) <= size.x && 2 * abs(from.y) <= size.y && 2 * abs(from.z) <= size.z;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 constexpr double least_index = 0.01;  // lower limit of the index's real part; metals have 0.05 or more
@@ -110,4 +110,4 @@ std::complex<double> read_particle_index(SetupTable table, double wavelength) {
   return material.index(wavelength);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -6,7 +6,7 @@
 
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Material of seeding particles.
 struct ParticleMaterial {
@@ -32,4 +32,4 @@ ParticleMaterial const& particle_material(std::string const& name);
 /// @param wavelength  vacuum wavelength of the laser [m]
 std::complex<double> read_particle_index(SetupTable table, double wavelength);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

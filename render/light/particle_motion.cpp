@@ -5,7 +5,7 @@
 #include "render/base/parallel.h"
 #include "render/light/particle_draw.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 // number of particles from which the number of steps is chosen
@@ -95,4 +95,4 @@ std::size_t count_outside(FlowSetup const& flow, Particles const& particles) {
   return count;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -10,7 +10,7 @@
 #include "render/light/particles.h"
 
 /// Steps of seeding and moving particles that pairs and sequences have in common.
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Returns the velocity of particles of a diameter [m] in the flow, with their lag.
 ParticleVelocity particle_velocity(ParticleSetup const& setup, FlowSetup const& flow, double diameter);
@@ -36,4 +36,4 @@ bool crowds_here(Flow const& flow, Vec3d place, double tau, KeyedEngine& engine)
 /// Counts the particles that are outside the velocity field of a file at either pulse.
 std::size_t count_outside(FlowSetup const& flow, Particles const& particles);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

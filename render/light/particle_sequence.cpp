@@ -8,7 +8,7 @@
 #include "render/base/random.h"
 #include "render/light/particle_motion.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 /// Returns the seed of the particles that are drawn in a frame.
@@ -114,4 +114,4 @@ Particles ParticleSequence::pair(std::size_t number) {
   return particles;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -8,7 +8,7 @@
 #include "render/base/warning.h"
 #include "render/light/particles.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Particles of a sequence of frames at equal intervals flow.dt, each advected from frame to frame along the flow.
 /// - The particles of the first frame fill the volume, as those of seed_particles() do. Particles that leave it are
@@ -67,4 +67,4 @@ struct ParticleCache {
   double photon_unit = 0;  ///< brightest particle of the first pair [photons]; 0: not computed
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -10,7 +10,7 @@
 #include "render/light/particle_material.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 constexpr double most_particles = 4e9;
@@ -104,4 +104,4 @@ ParticleSetup read_particle_setup(SetupTable table, double wavelength) {
   return setup;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -9,7 +9,7 @@
 #include "render/base/vec.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Key that specifies the number of particles.
 enum class ParticleCount { number, per_mm3, per_pixel, file };
@@ -59,4 +59,4 @@ struct ParticleSetup {
 /// Reads table [particles]. @param wavelength  vacuum wavelength of the laser, for the index of named materials [m]
 ParticleSetup read_particle_setup(SetupTable table, double wavelength);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

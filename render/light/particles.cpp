@@ -14,7 +14,7 @@
 #include "render/light/particle_draw.h"
 #include "render/light/particle_motion.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 /// Diameters of a table, with their cumulative weights.
@@ -169,4 +169,4 @@ Particles read_particles(ParticleSetup const& setup, FlowSetup const& flow, Lase
   return particles;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

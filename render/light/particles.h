@@ -7,7 +7,7 @@
 #include "render/light/laser_sheet.h"
 #include "render/light/particle_setup.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Particles at both laser pulses.
 struct Particles {
@@ -55,4 +55,4 @@ Particles read_particles(ParticleSetup const& setup, FlowSetup const& flow, Lase
 /// Draws the diameters of `count` particles [m], all positive. @throws DataError for an invalid file of diameters
 std::vector<double> draw_diameters(DiameterSetup const& setup, std::uint64_t seed, std::size_t count);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -9,7 +9,7 @@
 #include "render/base/sobol_order.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Shape of the light sources of a target.
 enum class SourceShape : int {
@@ -107,4 +107,4 @@ GLADSTONE_HD Vec2<T> point_on_circle(T radius, T turn) {
   return {radius * cos(angle), radius * sin(angle)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

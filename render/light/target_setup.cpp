@@ -5,7 +5,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 TargetSetup read_target_setup(SetupTable table) {
   TargetSetup setup;
@@ -59,4 +59,4 @@ TargetSetup read_target_setup(SetupTable table) {
   return setup;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

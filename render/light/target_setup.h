@@ -7,7 +7,7 @@
 #include "render/base/vec.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 enum class TargetKind {
   dots,
@@ -36,4 +36,4 @@ struct TargetSetup {
 
 TargetSetup read_target_setup(SetupTable table);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

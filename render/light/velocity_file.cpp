@@ -14,7 +14,7 @@
 #include "render/light/flow.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 constexpr int components = 3;
@@ -175,4 +175,4 @@ LoadedVelocity load_velocity(VelocityFile const& setup) {
   return loaded;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

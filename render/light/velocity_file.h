@@ -10,7 +10,7 @@
 #include "render/files/fields/field_file.h"
 #include "render/light/flows/file.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Keys of table [flow] with kind = "file", in SI.
 struct VelocityFile {
@@ -44,4 +44,4 @@ struct LoadedVelocity {
 /// @throws DataError
 LoadedVelocity load_velocity(VelocityFile const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -8,7 +8,7 @@
 #include "render/medium/ray_equation.h"
 #include "render/medium/refractive_index_volume.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Gridded refractivity as one polynomial per cell: sum of c x^a y^b z^c over powers below Basis::support, with x, y, z
 /// relative to the cell's lower corner [m]. Represents the same field as GriddedIndex with fewer operations but more
@@ -209,4 +209,4 @@ GLADSTONE_HD void fill_cell(GriddedIndex<double, Stored, Basis, 3> const& grid, 
   for (int at = 0; at < S * S * S; ++at) out[at] = c[at / (S * S)][at / S % S][at % S];
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -8,7 +8,7 @@
 #include "render/medium/fields/sinusoid.h"
 #include "render/medium/fields/uniform_gradient.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Density fields in closed form, each in a separate file. To add one, write its struct and add its name to the list.
 /// The struct is a medium, with bounds() [m] and sample(p) -> IndexSample, derives from Slab<T> and has
@@ -26,4 +26,4 @@ namespace gladstone {
 template <class T>
 using ClosedForm = std::variant<UniformGradient<T>, Sinusoid<T>, GaussianPlume<T>, GaussianBlob<T>, NormalShock<T>>;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

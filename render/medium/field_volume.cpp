@@ -10,7 +10,7 @@
 #include "render/base/units.h"
 #include "render/files/fields/field_file.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 namespace {
 
 std::unique_ptr<FieldSource> open_file(FieldSetup const& field) {
@@ -273,4 +273,4 @@ BuiltMedium build_medium(MediumSetup const& setup) {
   return setup.field.extrude ? build_grid<double, 2>(setup, grid, *source) : build_grid<float, 3>(setup, grid, *source);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

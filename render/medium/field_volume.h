@@ -8,7 +8,7 @@
 #include "render/medium/medium.h"
 #include "render/medium/medium_setup.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Returns true if n - 1 is within the accepted range, which applies to files and closed forms alike.
 constexpr bool is_plausible_refractivity(double refractivity) { return refractivity > -0.5 && refractivity < 3.0; }
@@ -50,4 +50,4 @@ double finest_length(MediumSetup const& setup);
 /// @throws DataError if the file is missing or broken, or has an unsuitable shape
 BuiltMedium build_medium(MediumSetup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -14,7 +14,7 @@
 #include "render/medium/gladstone_dale.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 namespace {
 
 /// Molar volume of an ideal gas at 0 C and 101325 Pa, R T / p [m^3/mol] (CODATA 2018).
@@ -174,4 +174,4 @@ GasMixture read_gas_mixture(SetupTable& medium, double wavelength) {
   return by_mass ? mixture_by_mass(fractions) : mixture_by_moles(fractions);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

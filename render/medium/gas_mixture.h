@@ -4,9 +4,11 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone {
-
+namespace gladstone::inline setup {
 class SetupTable;
+}
+
+namespace gladstone::inline medium {
 
 /// A gas whose Gladstone-Dale constant is known as a function of the wavelength.
 struct Gas {
@@ -62,4 +64,4 @@ GasMixture mixture_by_mass(std::span<double const> mass_fractions);
 /// @param wavelength  [m]
 GasMixture read_gas_mixture(SetupTable& medium, double wavelength);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Returns the Gladstone-Dale constant of dry air from Ciddor's dispersion formula: K = (n_s - 1) / rho_s at 15 C,
 /// 101325 Pa, 450 ppm CO2, rho_s = 1.225458 kg/m^3 (Ciddor, Appl. Opt. 35 (1996) 1566). Valid for 0.23 to 1.69 um.
@@ -20,4 +20,4 @@ constexpr double gladstone_dale_merzkirch(double wavelength) {
   return 2.2244e-4 * (1 + ratio * ratio);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -2,7 +2,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Refractivity and index gradient of a medium at one point. n - 1 is stored instead of n to avoid loss of digits.
 template <class T>
@@ -20,4 +20,4 @@ struct Bounds {
 
 inline constexpr double unbounded = 1e30;  ///< [m]; finite, so that differences of bounds are not NaN
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

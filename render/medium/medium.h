@@ -5,7 +5,7 @@
 #include "render/medium/closed_forms.h"
 #include "render/medium/refractive_index_volume.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 template <class T>
 using SplinePlane = GriddedIndex<T, double, CubicBspline, 2>;
@@ -32,4 +32,4 @@ struct MediumOf<T, std::variant<Forms...>> {
 template <class T>
 using Medium = typename detail::MediumOf<T, ClosedForm<T>>::Type;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -10,7 +10,7 @@
 #include "render/medium/gladstone_dale.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 namespace {
 
 template <class... Forms>
@@ -160,4 +160,4 @@ double truncated_fraction(MediumSetup const& setup) {
   return radius > 0 ? std::erfc(setup.thickness / 2 / radius) : 0.0;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -11,7 +11,7 @@
 #include "render/medium/trace_medium.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Source of a density field.
 enum class FieldKind { none, file, closed_form };
@@ -93,4 +93,4 @@ double automatic_thickness_mm(MediumSetup const& setup);
 /// thickness / radius) for a plume or blob, whose density is Gaussian along Z; 0 for other fields.
 double truncated_fraction(MediumSetup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

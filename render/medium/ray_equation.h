@@ -20,7 +20,7 @@
 #define GLADSTONE_STAGES _Pragma("GCC unroll 3")
 #endif
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Integration scheme for rays in a medium.
 enum class Integrator : int {
@@ -117,4 +117,4 @@ GLADSTONE_HD RayState<T> advance(Medium const& medium, RayState<T> ray, T dt, In
   return {ray.position + ray.optical_direction * dt + add.position, ray.optical_direction + add.optical_direction};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -9,7 +9,7 @@
 #include "render/base/progress.h"
 #include "render/files/fields/spline_prefilter.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 namespace {
 
 /// Returns the number of elements along an axis: nodes, one ghost before them, and one (open) or two (periodic) after.
@@ -206,4 +206,4 @@ void RefractiveIndexVolume<Stored>::measure_steepest() {
 template class RefractiveIndexVolume<float>;
 template class RefractiveIndexVolume<double>;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -11,7 +11,7 @@
 #include "render/files/fields/interpolation.h"
 #include "render/medium/index_sample.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// View of a gridded refractivity, passed by value; owns no memory. `Dimensions` is 3 for a volume, 2 for a plane that
 /// is extruded along z.
@@ -190,4 +190,4 @@ class RefractiveIndexVolume {
 extern template class RefractiveIndexVolume<float>;
 extern template class RefractiveIndexVolume<double>;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -7,7 +7,7 @@
 #include "render/base/ray.h"
 #include "render/medium/ray_equation.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Boundary condition for rays at the faces of the medium.
 enum class Faces : int {
@@ -69,8 +69,6 @@ GLADSTONE_HD Ray<T> apparent_ray(Ray<T> const& start, MediumPassage<T> const& wa
   return {{start.position.x + moved.x, start.position.y + moved.y, start.position.z}, exit_direction(start, way)};
 }
 
-namespace detail {
-
 /// Intersection of a straight line with a box. The line misses the box if enter >= leave.
 template <class T>
 struct Chord {
@@ -79,6 +77,7 @@ struct Chord {
   int entry_axis;  ///< axis normal to the entry face; -1: the start is inside
 };
 
+/// Returns the intersection of the line from p along d with a box; enter is at least 0.
 template <class T>
 GLADSTONE_HD Chord<T> chord_in(Bounds<T> const& box, Vec3<T> p, Vec3<T> d) {
   Chord<T> chord{T(0), T(unbounded), -1};
@@ -99,6 +98,8 @@ GLADSTONE_HD Chord<T> chord_in(Bounds<T> const& box, Vec3<T> p, Vec3<T> d) {
   }
   return chord;
 }
+
+namespace detail {
 
 /// Distance along T from R to the next face, as Sharma's t [m], and the axis normal to that face.
 template <class T>
@@ -455,4 +456,4 @@ GLADSTONE_HD void trace_medium(Medium const& medium, TracingOptions<T> const& op
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -11,7 +11,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 constexpr std::size_t most_coefficients = 10;
@@ -179,4 +179,4 @@ AgfContent read_agf(std::string_view text, std::string const& catalogue, int fir
   return reader.finish();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -6,7 +6,7 @@
 
 #include "render/optics/glass.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Error in a line of a glass catalogue.
 struct AgfFault {
@@ -34,4 +34,4 @@ AgfContent read_agf(std::string_view text, std::string const& catalogue, int fir
 /// Returns true if a refractive index is plausible: from air relative to air up to infrared crystals.
 inline bool is_index(double n) { return n > 0.99 && n < 7; }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

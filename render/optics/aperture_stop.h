@@ -2,7 +2,7 @@
 
 #include "render/base/host_device.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Circular aperture stop about the origin of its plane.
 template <class T>
@@ -25,4 +25,4 @@ struct ApertureStop {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -8,7 +8,7 @@
 #include "render/optics/paraxial.h"
 #include "render/optics/trace_back.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 constexpr double near_enough = 1e-3;  // accuracy of the rim points, relative to the stop's radius; the margin is wider
@@ -187,4 +187,4 @@ std::optional<ApparentPupil> find_apparent_pupil(Lens const& lens, RayOrigin con
   return find_apparent_pupil(sight, paraxial_guess(lens, origin), rim_points);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -5,7 +5,7 @@
 
 #include "render/optics/lens.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Origin of a bundle of rays, in the lens' frame: a point source, or a direction of parallel rays.
 struct RayOrigin {
@@ -75,4 +75,4 @@ std::optional<ApparentPupil> find_apparent_pupil(Lens const& lens, RayOrigin con
 /// stop. Vignetted rays count as reaching it.
 std::optional<Vec2d> intersect_stop(Lens const& lens, Ray<double> ray);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/base/ray.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Intersects a ray with a surface z = sag(x, y) by Newton's method, starting at the intersection with the surface's
 /// conic or, if the ray misses the conic, with the vertex plane.
@@ -34,4 +34,4 @@ GLADSTONE_HD bool intersect_asphere(Shape const& shape, Ray<T> const& ray, T& wa
   return last < T(tolerance);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -9,7 +9,7 @@
 #include "render/base/units.h"
 #include "render/optics/apparent_pupil.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 constexpr double within_disc = 0.99;  // relative pupil radius within which rays pass the stop
@@ -92,4 +92,4 @@ std::optional<double> max_axial_beam_radius(Lens const& lens, double object_dist
   return length(free * beam->disc.a);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

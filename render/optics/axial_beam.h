@@ -6,7 +6,7 @@
 #include "render/base/warning.h"
 #include "render/optics/lens.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Traces the axial beam and returns a warning if its light would run backwards through glass, because two faces of an
 /// element cross within the beam. The warning names the second face; nullopt if no faces cross. Vignetted rays
@@ -19,4 +19,4 @@ std::optional<Warning> crossed_faces(Lens const& lens, double object_distance);
 /// @param object_distance  distance from the object to the first vertex [m]
 std::optional<double> max_axial_beam_radius(Lens const& lens, double object_distance);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

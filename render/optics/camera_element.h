@@ -9,7 +9,7 @@
 #include "render/optics/element_kinds.h"
 #include "render/optics/lens_surface.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Circular stop with any pose. Transmits rays along its z axis in both directions.
 template <class T>
@@ -110,4 +110,4 @@ GLADSTONE_HD RayStatus pass_element(CameraElement<T> const& element, Ray<T>& ray
   return element.visit([&](auto const& held) { return pass(held, ray, account); });
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -4,7 +4,7 @@
 #include "render/optics/elements/wedge.h"
 #include "render/optics/elements/window.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 template <class... Kinds>
 struct ElementKinds {};
@@ -32,4 +32,4 @@ struct ElementKinds {};
 /// - root_table, camera_table: name of a table at the root, or of the camera, that is an element of this kind
 using AllElements = ElementKinds<OpticalWindow, WedgePrism, LensletSetup>;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Part of the light path in which an optical element is placed, in the order of the light, and the frame of its pose.
 enum class ElementSide {
@@ -14,4 +14,4 @@ enum class ElementSide {
 template <class... Surfaces>
 struct SurfaceTypes {};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

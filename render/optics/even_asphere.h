@@ -3,7 +3,7 @@
 #include "render/optics/asphere.h"
 #include "render/optics/quadric.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Even asphere: conic of revolution plus a polynomial in r^2, z = conic + a[0] r^2 + a[1] r^4 + ... + a[7] r^16 (ISO
 /// 10110-12).
@@ -48,4 +48,4 @@ struct EvenAsphere {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -7,7 +7,7 @@
 #include "render/base/interrupt.h"
 #include "render/optics/ray_bundle.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 /// Image plane behind the last surface, perpendicular to its axis.
@@ -177,4 +177,4 @@ std::vector<Vec3d> follow_ray(Lens const& lens, Ray<double> ray, double image_pl
   return points;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -6,7 +6,7 @@
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Rays lost at one surface for one reason. Rays that pass the plane of the stop outside its radius are not counted.
 struct SurfaceRayLoss {
@@ -49,4 +49,4 @@ FieldAnalysis analyse_field(Lens const& lens, ParaxialLens const& paraxial, int 
 /// Returns the polyline of a ray from its start to the image plane, for drawings [m]. It ends where the ray is lost.
 std::vector<Vec3d> follow_ray(Lens const& lens, Ray<double> ray, double image_plane);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

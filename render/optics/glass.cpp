@@ -10,7 +10,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 /// Coefficients of a formula; those missing in the catalogue are 0.
@@ -141,4 +141,4 @@ Glass Glass::from_samples(std::string name, std::vector<Sample> samples) {
   return glass;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Wavelengths, in air, of the Fraunhofer lines that define nd and Vd [m].
 namespace spectral_line {
@@ -68,4 +68,4 @@ struct Glass {
   static Glass from_samples(std::string name, std::vector<Sample> samples);
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

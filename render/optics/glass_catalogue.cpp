@@ -18,7 +18,7 @@
 #include "render/optics/glass_name.h"
 #include "render/optics/shipped_catalogue.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 constexpr double same_index = 1e-4;  // [1]; glasses of one name with a smaller difference are considered identical
@@ -296,4 +296,4 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

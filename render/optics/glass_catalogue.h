@@ -8,7 +8,7 @@
 #include "render/base/warning.h"
 #include "render/optics/glass.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Result of a search for a glass name.
 struct GlassMatch {
@@ -97,4 +97,4 @@ class GlassCatalogue {
   Warnings warnings_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

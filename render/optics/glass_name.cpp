@@ -4,7 +4,7 @@
 #include <array>
 #include <cctype>
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 constexpr std::array makers{"SCHOTT", "OHARA", "HOYA", "HIKARI", "NIKON", "CDGM", "SUMITA", "CORNING"};
@@ -35,4 +35,4 @@ std::size_t maker_rank(std::string_view catalogue) {
   return static_cast<std::size_t>(maker - makers.begin());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Returns the form in which names of glasses and catalogues are compared: upper case, without hyphens. NBK7 equals
 /// N-BK7.
@@ -18,4 +18,4 @@ bool is_catalogue(std::string_view catalogue, std::string_view asked);
 /// NIKON, CDGM, SUMITA, CORNING, then all others, which share the last position.
 std::size_t maker_rank(std::string_view catalogue);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -14,7 +14,7 @@
 #include "render/optics/lens_media.h"
 #include "render/optics/lens_stop.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 class LensBuilder {
@@ -164,4 +164,4 @@ Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, doub
   return lens;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

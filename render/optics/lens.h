@@ -9,7 +9,7 @@
 #include "render/optics/lens_surface.h"
 #include "render/optics/prescription.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// View of the surfaces of a lens, in the order of the light path; owns no memory.
 template <class T>
@@ -89,4 +89,4 @@ struct LensOptions {
 Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, double wavelength,
                 LensOptions const& options = {});
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -8,7 +8,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 LensMedium LensMedia::find(PrescribedMedium const& medium, std::string const& surface_where) {
   std::string const& where = medium.where.empty() ? surface_where : medium.where;
@@ -117,4 +117,4 @@ void LensMedia::note_described_glasses() {
                                    one ? "is" : "are", one ? "a glass" : "glasses")});
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

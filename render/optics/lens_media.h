@@ -9,7 +9,7 @@
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/prescription.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Index and absorption coefficient of a medium at the lens' wavelength.
 struct LensMedium {
@@ -71,4 +71,4 @@ class LensMedia {
   std::set<std::string> noted_;            ///< glasses with a warning
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

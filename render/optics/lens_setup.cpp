@@ -8,7 +8,7 @@
 #include "render/base/units.h"
 #include "render/optics/paraxial.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
   LensSetup setup;
@@ -95,4 +95,4 @@ ImagingGeometry thin_lens_imaging(double focal_length, double f_number, double f
   return {image_distance, image_distance / target_distance, std::isinf(f_number) ? 0.0 : focal_length / f_number};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

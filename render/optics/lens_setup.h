@@ -7,7 +7,7 @@
 #include "render/optics/lens.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 enum class Focus { target, medium, distance };
 enum class SpotModel { airy, gaussian, gaussian_first_zero, seed_eq8, none };
@@ -61,4 +61,4 @@ struct ImagingGeometry {
 /// @param target_distance  distance of the target, Z_B [m]
 ImagingGeometry thin_lens_imaging(double focal_length, double f_number, double focus_distance, double target_distance);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -11,7 +11,7 @@
 #include "render/optics/axial_beam.h"
 #include "render/optics/paraxial.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 /// Returns the distance from the stop's axis at which a ray intersects the stop [m]; nullopt if the ray is lost.
@@ -174,4 +174,4 @@ void open_rings(Lens& lens) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -4,7 +4,7 @@
 
 #include "render/optics/lens.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Distance ahead of the first vertex at which rays parallel to the axis begin [m].
 inline constexpr double start_of_parallel_rays = 1;
@@ -25,4 +25,4 @@ void note_wide_stop(Lens& lens, double f_number, double own_radius, double objec
 /// Removes central obscurations without outer radius that are larger than the axial beam, and would block all of it.
 void open_rings(Lens& lens);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -12,7 +12,7 @@
 #include "render/optics/surface_outline.h"
 #include "render/optics/tilted_plane.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Effect of a surface on a ray.
 enum class SurfaceAction : int {
@@ -129,4 +129,4 @@ template <class T>
 using LensSurface = OneOf<ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>,
                           ShapedSurface<T, RadialAsphere<T>>, ShapedSurface<T, TiltedPlane<T>>>;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -1,6 +1,6 @@
 #include "render/optics/optical_element.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 template <class... Kinds>
@@ -144,4 +144,4 @@ std::string element_name(std::vector<OpticalElement> const& elements, std::size_
   return kind + ' ' + std::to_string(number);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -12,7 +12,7 @@
 #include "render/optics/element_kinds.h"
 #include "render/optics/lens_setup.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 template <class List>
 struct AnyElementOf;
@@ -78,4 +78,4 @@ std::vector<ElementTable> element_tables(SetupTable root, SetupTable camera);
 /// later, when the wavelength is known.
 std::vector<OpticalElement> read_elements(std::vector<ElementTable> const& tables);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 RayTransfer ray_transfer(Lens const& lens, int first, int last) {
   RayTransfer m;
@@ -55,4 +55,4 @@ bool is_telecentric(RayTransfer const& to_stop) {
   return magnified * std::abs(to_stop.a) < 1;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -2,7 +2,7 @@
 
 #include "render/optics/lens.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Position and size of a pupil.
 struct Pupil {
@@ -42,4 +42,4 @@ RayTransfer ray_transfer(Lens const& lens, int first, int last);
 /// own field. Glass dispersion limits an infinite pupil distance to a single wavelength, hence the tolerance.
 bool is_telecentric(RayTransfer const& to_stop);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

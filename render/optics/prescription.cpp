@@ -16,7 +16,7 @@
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 struct PrescriptionFormat {
@@ -300,4 +300,4 @@ Warnings check_prescription(Prescription const& lens) {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

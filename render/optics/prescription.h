@@ -11,7 +11,7 @@
 #include "render/optics/glass.h"
 #include "render/optics/surface_outline.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Medium behind a surface, as specified by a prescription.
 struct PrescribedMedium {
@@ -142,4 +142,4 @@ Prescription read_prescription(std::string const& path);
 /// @throws DataError
 Warnings check_prescription(Prescription const& prescription);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -5,7 +5,7 @@
 #include "render/base/host_device.h"
 #include "render/base/ray.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Plane, sphere, conic of revolution or cylinder with its vertex at the origin, as one equation: z = (c/2) (x^2 + e
 /// y^2 + (1 + k) z^2). The sheet (branch) of this surface through the vertex is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2
@@ -69,4 +69,4 @@ struct Quadric {
   GLADSTONE_HD bool on_sheet(T const& z) const { return T(1) - (T(1) + conic) * curvature * z >= T(0); }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

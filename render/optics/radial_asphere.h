@@ -3,7 +3,7 @@
 #include "render/optics/asphere.h"
 #include "render/optics/quadric.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Conic of revolution plus a polynomial in the distance r from the axis: z = conic + sum of a[i] (r / scale)^(i + 1),
 /// or of a[i] (r / scale)^(2 i + 2). Design programs call it an extended (odd) asphere. If the term linear in r is not
@@ -66,4 +66,4 @@ struct RadialAsphere {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -4,7 +4,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Returns point k of `count` points that fill the unit disc uniformly (sunflower pattern, Vogel 1979). Successive
 /// points are rotated by the golden angle, and no two have the same radius or angle.
@@ -48,4 +48,4 @@ BundleSpot<T> compute_bundle_spot(std::vector<Vec2<T>> const& places, std::vecto
   return spot;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

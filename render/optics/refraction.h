@@ -5,7 +5,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Refracts a ray by Snell's law in vector form: n' d' - n d is parallel to the normal (Born & Wolf, Principles of
 /// Optics, section 3.2.2).
@@ -43,4 +43,4 @@ GLADSTONE_HD T fresnel_transmittance(T const& n_before, T const& n_after, T cons
   return T(1) - T(0.5) * (s * s + p * p);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

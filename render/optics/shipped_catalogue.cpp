@@ -10,7 +10,7 @@
 #include "render/optics/glass_name.h"
 #include "render/optics/shipped_glasses.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 ShippedCatalogue const& ShippedCatalogue::instance() {
   static ShippedCatalogue const catalogue;
@@ -66,4 +66,4 @@ Glass const& ShippedCatalogue::glass(std::size_t entry) const {
   return *slot;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

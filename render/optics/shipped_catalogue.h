@@ -9,7 +9,7 @@
 
 #include "render/optics/glass.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Glasses of the catalogues in data/glasses. At first only their names are read; a glass is read when it is first
 /// used. Usable by several threads at once.
@@ -49,4 +49,4 @@ class ShippedCatalogue {
                                                                ///< is used
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Catalogue of glasses that is compiled into the program.
 struct ShippedText {
@@ -15,4 +15,4 @@ struct ShippedText {
 /// location.
 std::vector<ShippedText> const& shipped_glasses();
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Rectangular or elliptical aperture or obscuration of a surface, at any position. Circles about the axis are
 /// represented by the surface's semi-diameter and obscured radius instead.
@@ -32,4 +32,4 @@ struct SurfaceOutline {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

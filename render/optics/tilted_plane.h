@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/base/ray.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Plane through the vertex, tilted relative to the coordinate frame: z = slope.x x + slope.y y.
 template <class T>
@@ -30,4 +30,4 @@ struct TiltedPlane {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -6,7 +6,7 @@
 
 #include "render/optics/camera_element.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Traces a ray backwards through an element, with the indices on both sides exchanged. Vignetting is ignored.
 /// @return false if the ray misses the element or is totally reflected, and for elements that cannot be traced
@@ -51,4 +51,4 @@ std::optional<Ray<double>> trace_back_from_stop(Elements const& elements, int st
   return ray;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -4,7 +4,7 @@
 #include "render/scene/ground_truth.h"
 #include "render/scene/ray_hit.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Flat Lambertian sources of a target, in the form required by the general renderer: points in space with an angular
 /// intensity. A source type provides place(), point(), intensity(), key(), middle(), reach() and area().
@@ -110,4 +110,4 @@ GLADSTONE_HD T enter_ray(RayHit<T> const& reference, RayHit<T> const& flow, Vec2
   return dot(shift, shift);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

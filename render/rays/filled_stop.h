@@ -14,7 +14,7 @@
 #define GLADSTONE_RAY_BY_RAY
 #endif
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Tolerance of the edge of the filled disc, as a fraction of the stop's radius. The relative error of a source's light
 /// is at most twice that: half a grey level at 12 bits.
@@ -247,4 +247,4 @@ GLADSTONE_HD AimedRay<double> ray_to(Sources const& sources, Pose<double> const&
   return ray_to_plane(sources, plane, map.at(at), pi * map.stretch(at), i);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 constexpr std::uint64_t fewest_rays = 192;  // number of rays above which the grid is faster than individual PSFs
@@ -66,4 +66,4 @@ void HitGrid::flush(Tile& tile, LightImage* image, double light_per_weight) {
   tile.columns = tile.lines = {0, 0};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

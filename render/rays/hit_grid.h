@@ -6,7 +6,7 @@
 #include "render/rays/hit_spline.h"
 #include "render/scene/light_image.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Accumulates the light of many rays with the same Gaussian PSF on the CPU by a HitSpline. A ray costs sixteen
 /// additions instead of the evaluation of a PSF. The grid consists of square tiles that are allocated where rays land.
@@ -45,4 +45,4 @@ class HitGrid {
   std::vector<double> rows_seen_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

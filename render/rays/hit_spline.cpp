@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 constexpr double nodes_a_sigma = 3;
@@ -33,4 +33,4 @@ HitSpline::HitSpline(GaussianSpot<double> const& spot)
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -12,7 +12,7 @@
 /// error is h^4/384 times the fourth derivative (de Boor, A Practical Guide to Splines), which is at most 1.4 /
 /// sigma^4. With three nodes per sigma, the error per pixel is at most 5e-5 of a ray's light, a fifth of a grey level
 /// at 12 bits, and less for pixels lit by rays at many positions.
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// The four nodes over which a hit is distributed along one axis, and their weights.
 struct HitStencil {
@@ -104,4 +104,4 @@ class HitSpline {
   std::vector<double> share_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -5,7 +5,7 @@
 #include "render/light/laser_sheet.h"
 #include "render/light/sources.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Particles at one pulse, in the form required by the general renderer: points in space with an angular intensity (see
 /// LambertSources). A particle is much smaller than the resolution of the lens: its image is the PSF at the positions
@@ -52,4 +52,4 @@ struct EqualSpheres {
   GLADSTONE_HD T cross_section(std::uint64_t, Vec3<T>, LightWave<T> const&) const { return T(1); }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -9,7 +9,7 @@
 #include "render/rays/particle_sources.h"
 #include "render/rays/source_tracer.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Parameters of all particles of a scene: with a sharp edge of the stop for rays that fill it, and with smoothed
 /// edges, whose width depends on the ray number, for rays that are vignetted there.
@@ -296,4 +296,4 @@ class ParticleTracer {
   double largest_shift2_ = 0, largest_margin_ = 0;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -7,7 +7,7 @@
 #include "render/scene/spot.h"
 #include "render/scene/trace_ray.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 constexpr double spare_px = 8;
@@ -75,4 +75,4 @@ std::vector<char> particles_near_view(Scene const& scene, RenderPlan const& plan
   return near;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

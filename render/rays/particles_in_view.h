@@ -5,7 +5,7 @@
 #include "render/light/particles.h"
 #include "render/scene/render_plan.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Returns, for each particle, whether its light can reach the sensor or its neighbourhood at either pulse.
 /// A particle is excluded only if at both pulses it is not illuminated or its image is farther from the sensor than the
@@ -22,4 +22,4 @@ namespace gladstone {
 /// If an optical element divides the light cones (lenslets), all particles are included.
 std::vector<char> particles_near_view(Scene const& scene, RenderPlan const& plan, Particles const& particles);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

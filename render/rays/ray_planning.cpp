@@ -17,7 +17,7 @@
 #include "render/scene/spot.h"
 #include "render/scene/trace_ray.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 /// Rays from the centre of a source, as points of the unit disc that is mapped to its entrance pupil.
@@ -185,4 +185,4 @@ std::uint64_t largest_ray_number(Scene const& scene, RenderPlan const& plan) {
       ParticleLaunches(scene, plan, make_spot(scene, airy), RenderImages::yes).ladder.goal().most);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

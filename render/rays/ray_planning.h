@@ -3,7 +3,7 @@
 #include "render/scene/ray_budget.h"
 
 /// Integration step and number of rays of any scene.
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Chooses the integration step such that halving it changes no dot's displacement by more than 1e-4 px.
 /// The search starts at medium.coarsest_step and halves it up to 12 times. A step given in the setup is used unchanged,
@@ -25,4 +25,4 @@ RenderPlan plan_rays_by_tracing(Scene const& scene, RenderPlan plan);
 /// of the finest cubature rule of particles.
 std::uint64_t largest_ray_number(Scene const& scene, RenderPlan const& plan);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -7,7 +7,7 @@
 #include "render/scene/ray_budget.h"
 
 /// Number of rays that a source requires, determined from the source itself and the camera's exposure alone.
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Placement of a source's rays. Determines how fast their errors decrease with the number of rays.
 enum class RayPlacement {
@@ -143,4 +143,4 @@ GLADSTONE_HD inline double estimate_required_rays(RequiredRayAccuracy const& goa
   return asked;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -2,7 +2,7 @@
 
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 RayTheory::RayTheory(Scene const& scene, RaysLaunch const& launch, SourceShape shape, bool extended, int most_rings)
     : plane_(scene.target_plane()),
@@ -104,4 +104,4 @@ StrainMap map_strain_by_rays(Scene const& scene, RenderPlan const& plan) {
   return compute_strain(displacement, spacing_px);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

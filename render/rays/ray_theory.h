@@ -5,7 +5,7 @@
 #include "render/scene/source_cubature.h"
 #include "render/scene/theory.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Integrals along a straight ray of the components of grad n perpendicular to the camera's axis.
 struct TransverseGradientIntegral {
@@ -113,4 +113,4 @@ double theory_seconds(Scene const& scene, RenderPlan const& plan);
 FieldMap map_field_by_rays(Scene const& scene, RenderPlan const& plan, int spacing_px);
 StrainMap map_strain_by_rays(Scene const& scene, RenderPlan const& plan);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -4,7 +4,7 @@
 
 #include "render/scene/spot.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 /// Returns true if the optics have aberrations (prescription or refracting elements), so that rays do not fill a disc
@@ -78,4 +78,4 @@ std::size_t RaysLadder::next(std::size_t step, RayPlacement sent, EdgeRaySpread 
   return asked > rays ? std::max(step + 1, at_least(asked)) : step;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -6,7 +6,7 @@
 #include "render/rays/rays_launch.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Sequence of launches with increasing numbers of rays, among which the number for each source is chosen adaptively.
 /// Contains a single launch if the number is not adaptive.
@@ -43,4 +43,4 @@ class RaysLadder {
   RequiredRayAccuracy goal_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -7,7 +7,7 @@
 #include "render/base/units.h"
 #include "render/scene/shift_limit.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 /// Returns the smaller semi-axis of the ellipse [m].
@@ -130,4 +130,4 @@ double RaysLaunch::wider_margin(double shift) const {
   return margin;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

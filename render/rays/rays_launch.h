@@ -8,7 +8,7 @@
 #include "render/scene/render_plan.h"
 #include "render/scene/spot.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Treatment of the aperture stop's edge in a RaysLaunch.
 enum class StopRim {
@@ -82,4 +82,4 @@ struct RaysLaunch {
   bool soft() const;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

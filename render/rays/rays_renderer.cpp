@@ -12,7 +12,7 @@
 #include "render/rays/trace_particles.h"
 #include "render/scene/spot.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 template <class Medium>
@@ -173,4 +173,4 @@ Image<double> render_white_target(Scene const& scene) {
   return white;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -2,7 +2,7 @@
 
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// General renderer on the CPU: any source through any camera, by ray tracing.
 /// The PSF of every ray is added to the image where the ray lands. The truth is the centroid of the rays that pass the
@@ -25,4 +25,4 @@ std::vector<Vec2d> ideal_displacements(Scene const& scene, RenderPlan const& pla
 /// Renders a white target: light per pixel, from which dark dots are subtracted.
 Image<double> render_white_target(Scene const& scene);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

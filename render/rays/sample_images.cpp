@@ -16,7 +16,7 @@
 #include "render/scene/spot.h"
 #include "render/scene/two_media.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 constexpr std::size_t sample_sources = 96;
@@ -113,4 +113,4 @@ double measure_image_error(Scene const& scene, RenderPlan const& plan, double le
   return std::sqrt(b.next_rule ? worse : worse / 2) / level;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -4,7 +4,7 @@
 
 /// Images of a sample of a scene's sources by the general renderer on the CPU: the exposure before a rendering, and the
 /// error of its images afterwards.
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Number of rays of the sources of a sample.
 enum class SampleRays {
@@ -34,4 +34,4 @@ double brightest_pixel(SampleImages const& sample);
 /// @return error [grey levels]; NaN if no pixel is lit
 double measure_image_error(Scene const& scene, RenderPlan const& plan, double level);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

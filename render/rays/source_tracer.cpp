@@ -1,6 +1,6 @@
 #include "render/rays/source_tracer.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 RayLight::RayLight(SpotView const& spot) : spot_(spot), patch_(spot) {}
 
@@ -21,4 +21,4 @@ void RayLight::finish() {
   by_grid_ ? grid_->flush(image_, light_per_weight_) : patch_.flush(image_, light_per_weight_);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -14,7 +14,7 @@
 #include "render/scene/light_patch.h"
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Deposits the light of one source in one image, by a HitGrid or PSF by PSF.
 class RayLight {
@@ -195,4 +195,4 @@ class SourceTracer {
   double largest_shift2_ = 0, largest_margin_ = 0;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

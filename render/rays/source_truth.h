@@ -5,7 +5,7 @@
 #include "render/light/sources.h"
 #include "render/scene/truth_error.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Computes the truth of a source from the sums over its scramblings.
 /// @param scramblings  number of scramblings; 0: no ray passes, the result is NaN
@@ -31,4 +31,4 @@ struct TracedParticleTruth {
   DotTruth ambient;  ///< frames A and B, without the medium
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -4,7 +4,7 @@
 
 #include "render/base/gauss_legendre.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 StopRule::StopRule(std::uint64_t rays) {
   int const rings = static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays) / 4)));
@@ -16,4 +16,4 @@ StopRule::StopRule(std::uint64_t rays) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

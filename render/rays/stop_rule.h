@@ -6,7 +6,7 @@
 #include "render/base/random.h"
 #include "render/rays/particle_sources.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Cubature rule over the unit disc: Gauss-Legendre in r^2 times equal angles, with every other ring rotated by half an
 /// angular step (Stroud, Approximate Calculation of Multiple Integrals, 1971, chapter 2). With k rings of 4 k nodes, it
@@ -56,4 +56,4 @@ class StopRule {
   std::vector<double> radius2_, share_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -11,7 +11,7 @@
 #include "render/scene/particle_scene.h"
 #include "render/scene/spot.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 namespace {
 
 constexpr Vec2d unknown{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
@@ -84,4 +84,4 @@ Rendering trace_particles(Scene const& scene, RenderPlan const& plan, Particles 
   return rendering;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

@@ -5,7 +5,7 @@
 #include "render/rays/particle_tracer.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline rays {
 
 /// Calls visit(pulses, medium) with the ParticleSources of both pulses, whose type depends on the scattering, and with
 /// the medium.
@@ -39,4 +39,4 @@ void count_rays(Rendering& rendering);
 Rendering trace_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles, ParticleLight light,
                           RenderImages images);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline rays

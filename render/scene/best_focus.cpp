@@ -11,7 +11,7 @@
 #include "render/optics/ray_bundle.h"
 #include "render/scene/build_camera.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr int bundle_rays = 500;
@@ -152,4 +152,4 @@ void position_lens_from_sensor(Setup& setup) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

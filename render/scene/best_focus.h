@@ -3,7 +3,7 @@
 #include "render/scene/camera.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Returns the distance by which the sensor must move along its normal to reach the best focus of an object point [m].
 /// Traces a bundle of rays from the point through stop and lens. Its mean square radius is a parabola along the
@@ -19,4 +19,4 @@ double best_focus(Camera const& camera, Vec3d point);
 /// @throws DataError if no lens position images the plane in focus onto the sensor
 void position_lens_from_sensor(Setup& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -9,7 +9,7 @@
 #include "render/base/units.h"
 #include "render/scene/best_focus.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr double sharp = 0;  // width of the smoothed edge of a stop; 0: sharp
@@ -247,4 +247,4 @@ Camera build_camera(Setup const& setup) {
   return camera;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

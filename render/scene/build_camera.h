@@ -3,7 +3,7 @@
 #include "render/scene/camera.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Returns the paraxial model (ray-transfer matrices) of a setup's lens and other optical elements.
 ParaxialCamera paraxial_camera(Setup const& setup);
@@ -39,4 +39,4 @@ double posed_view_area(Setup const& setup);
 /// @throws DataError if the plane in focus has no real image or too few rays reach the sensor
 Camera build_camera(Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

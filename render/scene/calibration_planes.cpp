@@ -7,7 +7,7 @@
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr double least_dot_px = 3;  // [px]; the centres of smaller dots depend on the pixel phase
@@ -81,4 +81,4 @@ void cross_check_calibration(Setup const& setup, SetupTable root, Warnings& warn
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -9,7 +9,7 @@
 #include "render/scene/camera.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Returns the setup of one plane of a calibration, rendered ray by ray. The camera is unchanged: its focus and tilt
 /// remain those for Z = 0.
@@ -35,4 +35,4 @@ std::optional<Pinhole> equivalent_pinhole(Setup const& setup, Camera const& came
 /// spacing of the dots in the image.
 void cross_check_calibration(Setup const& setup, SetupTable root, Warnings& warnings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

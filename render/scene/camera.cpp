@@ -7,7 +7,7 @@
 
 #include "render/optics/trace_back.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr int rim_points = 8;  // points on the edge of the stop by which the entrance pupil is found
@@ -266,4 +266,4 @@ Vec2d Camera::ideal_project(Vec3d point) const {
                                   local.position.y + way * local.direction.y);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -9,7 +9,7 @@
 #include "render/optics/paraxial.h"
 #include "render/scene/trace_ray.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Paraxial model of a camera's lens: ray transfer in air along its axis.
 struct ParaxialCamera {
@@ -126,4 +126,4 @@ class Camera {
   double place_step(Pose<double> const& plane) const;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

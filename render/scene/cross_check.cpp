@@ -10,7 +10,7 @@
 #include "render/scene/setup_checks.h"
 #include "render/sensor/diffraction_spot.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr double widest_spot_px = 200;   // maximum diameter between first zeros [px]; f/64 gives about 10 px
@@ -129,4 +129,4 @@ Warnings cross_check(Setup const& setup, SetupTable root) {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -6,7 +6,7 @@
 #include "render/medium/field_volume.h"
 #include "render/scene/setup_checks.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr double negligible_loss = 0.01;  // tolerated relative truncation of the displacement for a given thickness
@@ -128,4 +128,4 @@ void cross_check_steps(Setup const& setup, SetupTable medium, std::string const&
                        steps, max_step_count, key == "file" ? "give medium.field.spacing_mm; " : "use a longer one; "));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -11,7 +11,7 @@
 #include "render/scene/setup_checks.h"
 
 /// Checks that no objects between the dots and the lens overlap.
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr double touching = 1e-9;  // tolerance for faces in contact [m]
@@ -128,4 +128,4 @@ void cross_check_elements(Setup const& setup, SetupTable const& root) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -3,7 +3,7 @@
 #include "render/scene/source_kind.h"
 #include "render/scene/source_sample.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 DotPattern build_target(Setup const& setup) {
   DotPattern dots;
@@ -76,4 +76,4 @@ constinit SourceKind const dot_sources{.one = "dot",
                                        .in_view = is_dot_in_view,
                                        .retain = retain_dots};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

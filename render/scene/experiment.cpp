@@ -2,7 +2,7 @@
 
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 Experiment const& find_experiment(std::string const& name) {
   for (Experiment const* one : all_experiments)
@@ -17,4 +17,4 @@ Experiment const& Setup::experiment() const {
 
 bool Setup::has_ideal_particles() const { return piv && piv->particles.scattering == ParticleScattering::gaussian; }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -8,7 +8,7 @@
 #include "render/scene/source_kind.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Kind of experiment: how its setup is read and checked, and what its scene contains. Setup::experiment() returns that
 /// of a setup.
@@ -39,4 +39,4 @@ inline constexpr std::array all_experiments{&bos_experiment, &piv_experiment, &c
 /// Returns the experiment with a name; the default if there is none.
 Experiment const& find_experiment(std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

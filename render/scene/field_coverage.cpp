@@ -7,7 +7,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr double least_share = 0.1;
@@ -108,4 +108,4 @@ std::optional<Warning> side_face_warning(BuiltMedium const& medium, Setup const&
                   faces, 100 * largest)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

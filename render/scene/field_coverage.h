@@ -8,7 +8,7 @@
 #include "render/medium/index_sample.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Extent of a density field compared with the field of view, at the depth of the field's mid-plane.
 struct FieldCoverage {
@@ -32,4 +32,4 @@ FieldCoverage field_coverage(Bounds<double> const& box, Setup const& setup);
 /// there; swapped axes are a likely cause.
 std::optional<Warning> side_face_warning(BuiltMedium const& medium, Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

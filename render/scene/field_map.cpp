@@ -8,7 +8,7 @@
 #include "render/base/parallel.h"
 #include "render/scene/theory.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 FieldMap FieldMap::ambient(Setup const& setup, int spacing_px) {
   int const columns = std::max(1, setup.camera.columns / spacing_px);
@@ -159,4 +159,4 @@ StrainMap map_strain(Scene const& scene) {
   return compute_strain(displacement, spacing_px);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -4,7 +4,7 @@
 #include "render/base/vec.h"
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Integrals of small-angle theory (Eq. 9) over a regular lattice of the image: averages along the chief ray of every
 /// lattice point.
@@ -45,4 +45,4 @@ StrainMap compute_strain(Image<Vec2d> const& displacement, int spacing_px);
 /// mid-plane at the same positions, so that all cones share the same rays.
 StrainMap map_strain(Scene const& scene);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -7,7 +7,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 void GroundTruth::resize(std::size_t count) {
   std::vector<Vec2d>* const columns[] = {
@@ -79,4 +79,4 @@ TruthAccuracy truth_accuracy(GroundTruth const& truth, double limit_px) {
   return accuracy;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

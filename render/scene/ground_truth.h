@@ -8,7 +8,7 @@
 #include "render/base/ray.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Weighted sums over the ray hits of one dot in one image, relative to a nearby origin to avoid loss of significance.
 template <class T>
@@ -114,4 +114,4 @@ inline void add_counts(StatusCounts& all, StatusCounts const& some) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

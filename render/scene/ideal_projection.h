@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Pinhole projection through an ideal thin lens on the Z axis to a sensor perpendicular to it.
 struct IdealProjection {
@@ -24,4 +24,4 @@ struct IdealProjection {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

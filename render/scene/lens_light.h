@@ -6,7 +6,7 @@
 #include "render/base/units.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Light through a lens from a small source, approximated by its intensity in the direction of the lens' centre.
 struct LensLight {
@@ -32,4 +32,4 @@ struct LensLight {
 /// all directions [m^2/sr]. @param d  diameter [m]
 GLADSTONE_HD constexpr double isotropic_cross_section(double d) { return d * d / 16; }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -8,7 +8,7 @@
 #include "render/base/image.h"
 #include "render/sensor/exposure.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Image accumulator in 64-bit fixed point. Threads may add to it concurrently; the result does not depend on the
 /// order.
@@ -36,4 +36,4 @@ class LightImage {
   std::vector<std::atomic<std::int64_t>> light_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 /// Returns the pixels that a PSF centred at p covers.
@@ -80,4 +80,4 @@ void LightPatch::flush(LightImage* image, double light_per_weight) {
   low_column_ = high_column_ = low_row_ = high_row_ = 0;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

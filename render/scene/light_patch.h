@@ -6,7 +6,7 @@
 #include "render/scene/light_image.h"
 #include "render/scene/spot.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Square pixel buffer that accumulates the PSFs of one source's rays in double precision before they are added to the
 /// image.
@@ -38,4 +38,4 @@ class LightPatch {
   std::vector<double> column_shares_, row_shares_;  ///< factors of the PSF along both axes
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

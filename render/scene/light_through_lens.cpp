@@ -7,7 +7,7 @@
 #include "render/scene/particle_scene.h"
 #include "render/sensor/detector.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 LightThroughLens::LightThroughLens(Scene const& scene, ParticleLight light)
     : scene_(scene),
@@ -76,4 +76,4 @@ double photon_unit(Scene const& scene, Particles const& particles, ParticleLight
   return brightest > 0 ? brightest : 1;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -12,7 +12,7 @@
 #include "render/scene/ideal_projection.h"
 #include "render/scene/setup_checks.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr double bending_margin = 0.02;       // maximum deflection by media on the way to the lens [rad]
@@ -418,4 +418,4 @@ void cross_check_particles(Setup const& setup, SetupTable root, Warnings& warnin
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -8,7 +8,7 @@
 #include "render/scene/lens_light.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Largest change of a particle's final position when the integration step is halved [px].
 inline constexpr double path_tolerance_px = 1e-5;
@@ -87,4 +87,4 @@ Warnings warnings_of_particles(Scene const& scene);
 /// wavelengths.
 void cross_check_particles(Setup const& setup, SetupTable root, Warnings& warnings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

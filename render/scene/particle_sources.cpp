@@ -1,7 +1,7 @@
 #include "render/scene/particle_scene.h"
 #include "render/scene/source_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 /// Returns the memory of particles, of the medium at the second pulse, and of the velocity field.
@@ -54,4 +54,4 @@ constinit SourceKind const particle_sources{.one = "particle",
                                             .in_view = is_particle_in_view,
                                             .retain = retain_particles};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

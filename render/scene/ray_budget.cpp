@@ -8,7 +8,7 @@
 #include "render/scene/shift_limit.h"
 #include "render/scene/spot.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr std::uint64_t most_rays = std::uint64_t{1} << 16, always_allowed = 1024;
@@ -60,4 +60,4 @@ double light_per_level(CameraSetup const& camera, double exposure_e) {
   return camera.noise.full_well_e / exposure_e / (std::exp2(error_bit_depth(camera)) - 1);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -4,7 +4,7 @@
 
 #include "render/scene/render_plan.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Maximum processor time for the rays of one source with an adaptive ray number [s]: one minute for the 5000 dots of
 /// 512 x 512 px. The limit applies per source, so that the ray number of a source does not depend on the others. The
@@ -30,4 +30,4 @@ double theory_ray_seconds(Scene const& scene, RenderPlan const& plan);
 /// Returns the maximum number of rays per source for adaptive ray numbers: a power of two from 1024 to 65,536.
 std::uint64_t max_rays_per_source(Scene const& scene, RenderPlan const& plan);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

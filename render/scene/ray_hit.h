@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/base/ray.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// The two images of a pair: reference and measurement image (PIV: frames A and B).
 enum class Frame : int { reference = 0, flow = 1 };
@@ -24,4 +24,4 @@ GLADSTONE_HD constexpr bool reaches_sensor_plane(RayStatus status) {
   return status == RayStatus::alive || status == RayStatus::missed_sensor;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

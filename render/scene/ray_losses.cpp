@@ -10,7 +10,7 @@
 #include "render/optics/ray_bundle.h"
 #include "render/scene/source_sample.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr std::size_t sampled_sources = 32;
@@ -114,4 +114,4 @@ RayLosses sample_ray_losses(Scene const& scene, RenderPlan const& plan) {
   return losses;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -10,7 +10,7 @@
 
 /// Diagnosis of ray losses: the elements at which a sample of a scene's rays is blocked or lost. Renderers count lost
 /// rays by cause only.
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Fraction of rays lost at one element for one cause.
 struct ElementRayLoss {
@@ -33,4 +33,4 @@ struct RayLosses {
 /// the stop are not sampled. A camera without a stop has one ray per source.
 RayLosses sample_ray_losses(Scene const& scene, RenderPlan const& plan);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -13,7 +13,7 @@
 #include "render/scene/setup.h"
 #include "render/scene/setup_checks.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 SetupTable camera_table(SetupTable& root) {
   auto cameras = root.tables("camera");
@@ -269,4 +269,4 @@ Setup read_setup(SetupTable root) {
   setup.render = read_render_setup(root.table("render"));
   return setup;
 }
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

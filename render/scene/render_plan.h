@@ -8,7 +8,7 @@
 
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Accuracy required of "auto" ray numbers: true displacements [px] and images [grey levels].
 inline constexpr double truth_tolerance_px = 1e-3;
@@ -67,4 +67,4 @@ struct RenderPlan {
 /// and the search for a sufficient margin would not terminate
 RenderPlan with_step(Scene const& scene, IntegrationStep const& step);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 /// Converts a recorded image to the grey levels that correlation reads, identical to those in the image file.
@@ -30,4 +30,4 @@ std::unique_ptr<StoredFrames const> HostLight::ideal(Detector const& detector) c
   return std::make_unique<HostFrames const>(detector.ideal(light_.reference), detector.ideal(light_.flow));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -6,7 +6,7 @@
 #include "render/base/frame_pair.h"
 #include "render/sensor/detector.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Two images as recorded by a camera.
 struct RecordedFrames {
@@ -42,4 +42,4 @@ class HostLight final : public RenderedLight {
   FramePair<double> light_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -3,7 +3,7 @@
 #include "render/base/error.h"
 #include "render/scene/ray_hit.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 char const* to_string(TableState state) {
   switch (state) {
@@ -57,4 +57,4 @@ Rendering TracingPass::finish() {
   return std::move(rendering);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -12,7 +12,7 @@
 #include "render/scene/rendered_light.h"
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Whether a deflection table was built for the truth, and the reason if not.
 enum class TableState {
@@ -101,4 +101,4 @@ struct TracingPass {
   std::vector<char> left_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

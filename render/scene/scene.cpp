@@ -15,7 +15,7 @@
 #include "render/scene/shift_limit.h"
 #include "render/sensor/sensor.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 double gigabytes(double bytes) { return bytes / 1e9; }
@@ -175,4 +175,4 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
   return scene;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -13,7 +13,7 @@
 #include "render/scene/setup.h"
 #include "render/sensor/diffraction_spot.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// A setup prepared for ray tracing: a value that nothing changes after build_scene(). Owns the dots or particles and
 /// the medium.
@@ -97,4 +97,4 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium = nullptr);
 /// @throws DataError
 BuiltMedium build_checked_medium(MediumSetup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Largest number of frames of a sequence.
 inline constexpr long long max_sequence_frames = 1'000'000;
@@ -24,4 +24,4 @@ struct SequenceSetup {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -7,7 +7,7 @@
 #include "render/scene/build_camera.h"
 #include "render/sensor/diffraction_spot.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 double Setup::focus_distance() const {
   switch (lens.focus) {
@@ -133,4 +133,4 @@ double Setup::dot_count() const {
   return std::round(target.dots_per_32px_window / 1024.0 * extent.x * extent.y / pixel_area());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -19,7 +19,7 @@
 #include "render/sensor/camera_setup.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// e^-2 diameter of dot and particle images below which correlation is biased towards whole pixels (peak locking) [px].
 inline constexpr double min_image_px = 2;
@@ -156,4 +156,4 @@ Setup read_setup(SetupTable root);
 /// @return warnings
 Warnings cross_check(Setup const& setup, SetupTable root);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -6,7 +6,7 @@
 #include "render/base/warning.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Parts of read_setup() and cross_check(). Each records problems at the keys concerned.
 
@@ -53,4 +53,4 @@ void cross_check_density(Setup const& setup, SetupTable& medium, Warnings& warni
 /// the medium. A file that cannot be read is ignored; its reader reports it.
 void cross_check_steps(Setup const& setup, SetupTable medium, std::string const& of_field = "field");
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

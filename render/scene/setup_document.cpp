@@ -5,7 +5,7 @@
 #include "render/base/error.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 SetupDocument read_setup_document(std::string const& path, std::vector<std::string> const& overrides) {
   std::string text;
@@ -24,4 +24,4 @@ SetupDocument read_setup_document(std::string const& path, std::vector<std::stri
   return document;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Checks that the medium deflects no ray by more than 45 degrees before it reaches the lens: no real set-up does so,
 /// and the search for a sufficient pupil margin would not terminate.
@@ -9,4 +9,4 @@ namespace gladstone {
 /// @throws DataError if shift > z_b
 void check_deflection_limit(double shift, double z_b);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -1,6 +1,6 @@
 #include "render/scene/side_faces.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 /// Cross-section of a source's light cone normal to the axis.
@@ -44,4 +44,4 @@ std::vector<std::size_t> sources_at_side_faces(Scene const& scene, RenderPlan co
   return found;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -6,7 +6,7 @@
 #include "render/base/gauss_legendre.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 SourceCubature SourceCubature::disc(int radial, int innermost, int outermost) {
   SourceCubature cubature;
@@ -56,4 +56,4 @@ SourceCubature SourceCubature::square(int side) {
   return cubature;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

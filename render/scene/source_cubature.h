@@ -5,7 +5,7 @@
 #include "render/base/vec.h"
 #include "render/light/sources.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Cubature rule over a source, a unit disc or square, that integrates the PSF over the source's area with an error far
 /// below a grey level.
@@ -29,4 +29,4 @@ struct SourceCubature {
   static SourceCubature make(SourceShape shape, double half_size_px, double spot_px);
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -6,7 +6,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 struct Setup;
 struct Scene;
@@ -39,4 +39,4 @@ struct SourceKind {
 
 extern SourceKind const dot_sources, particle_sources;
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -1,6 +1,6 @@
 #include "render/scene/source_sample.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 std::vector<std::size_t> sources_in_view(Scene const& scene) {
   std::vector<std::size_t> in_view;
@@ -29,4 +29,4 @@ DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& in
   return some;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -5,7 +5,7 @@
 
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Returns the indices of the scene's sources in view; if none is in view, the index of the first source.
 std::vector<std::size_t> sources_in_view(Scene const& scene);
@@ -16,4 +16,4 @@ std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& sources, 
 /// Returns the dots of a pattern that have the given indices.
 DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& indices);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -2,7 +2,7 @@
 
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy) {
   SpotView spot;
@@ -12,4 +12,4 @@ SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy) {
   return spot;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -5,7 +5,7 @@
 #include "render/optics/lens_setup.h"
 #include "render/sensor/diffraction_spot.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 struct Scene;
 
@@ -25,4 +25,4 @@ struct SpotView {
 /// Returns the PSF of a scene's lens. An Airy table is built into `airy`, which must outlive the view.
 SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

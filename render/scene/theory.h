@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/medium/trace_medium.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Integrals over z along a straight ray through the medium.
 template <class T>
@@ -22,7 +22,7 @@ template <class T, class Medium, class Visit>
 GLADSTONE_HD void along_field(Medium const& medium, Ray<T> const& start, T step, Visit&& visit) {
   using std::ceil;
   constexpr double root = 0.77459666924148337704;  // sqrt(3/5)
-  detail::Chord<T> const chord = detail::chord_in(medium.bounds(), start.position, start.direction);
+  Chord<T> const chord = chord_in(medium.bounds(), start.position, start.direction);
   T const way = chord.leave - chord.enter;
   if (!(way > T(0))) return;
   int const panels = static_cast<int>(ceil(way / step * (T(1) - T(1e-6)))) + (way < step * T(1e-6) ? 1 : 0);
@@ -65,4 +65,4 @@ GLADSTONE_HD Vec2<T> theory_displacement(Vec2<T> integral, T lever, T magnificat
   return {-scale * integral.x, scale * integral.y};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

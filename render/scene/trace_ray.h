@@ -8,7 +8,7 @@
 #include "render/scene/ray_hit.h"
 #include "render/sensor/posed_sensor.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Optical elements and sensor on a ray's path: a non-owning view, passed by value.
 template <class T>
@@ -122,4 +122,4 @@ GLADSTONE_HD RayHit<T> trace_ray(View const& camera, Medium const& medium, Traci
   return hit[0];
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -4,7 +4,7 @@
 #include "render/scene/ray_hit.h"
 
 /// Standard errors of a source's displacement, from the scatter between independent scramblings of its rays.
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Sums over a subset of a source's rays, for both images.
 struct RaySums {
@@ -49,4 +49,4 @@ GLADSTONE_HD Vec2d displacement_error2(Sums const* of, int scramblings, Sums con
   return error2_factor(scramblings) * squares;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

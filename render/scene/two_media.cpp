@@ -7,7 +7,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 constexpr std::size_t sampled = 256;  // number of particles whose scatter is measured
@@ -96,4 +96,4 @@ Rendering render_in_two_media(Renderer& renderer, Scene const& scene, RenderPlan
   return all;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -2,7 +2,7 @@
 
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 
 /// Returns the scene with its first medium as its only one, as seen by the first pulse.
 Scene select_first_pulse(Scene const& scene);
@@ -21,4 +21,4 @@ Scene select_second_pulse(Scene const& scene);
 Rendering render_in_two_media(Renderer& renderer, Scene const& scene, RenderPlan const& plan,
                               Particles const& particles, ParticleLight light, RenderImages images);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

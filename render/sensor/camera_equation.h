@@ -2,7 +2,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// Illumination of the target: radiance of white paper and exposure time.
 struct PaperLight {
@@ -27,4 +27,4 @@ T fully_lit_electrons(PaperLight const& light, T f_number, T magnification, doub
   return pi * light.radiance * light.exposure_time * pitch * pitch * efficiency / (4.0 * photon) / (working * working);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

@@ -8,7 +8,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 namespace {
 
 constexpr double max_background = 0.8;  // largest background as a fraction of the full well
@@ -117,4 +117,4 @@ double clipped_at_black(CameraSetup const& camera) {
   return sigma * std::exp(-0.5 * t * t) / std::sqrt(2 * pi) - black * below(0);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

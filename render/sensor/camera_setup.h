@@ -9,7 +9,7 @@
 #include "render/sensor/posed_sensor.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// Table [camera.noise]. Without it the sensor is ideal.
 struct NoiseSetup {
@@ -75,4 +75,4 @@ CameraSetup read_camera_setup(SetupTable table);
 /// Read noise and the shot noise of the dark charge are taken as normally distributed.
 double clipped_at_black(CameraSetup const& camera);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

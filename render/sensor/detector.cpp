@@ -10,7 +10,7 @@
 #include "render/base/parallel.h"
 #include "render/files/image_file.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 namespace {
 
 /// Returns the noise seed of a frame of a sequence, independent of the seeds of repetitions (repeat_seed()).
@@ -261,4 +261,4 @@ Recording Detector::record(Image<double> const& light, RandomStream stream) cons
   return recording;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

@@ -8,7 +8,7 @@
 #include "render/sensor/camera_setup.h"
 #include "render/sensor/pixel_detector.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// A recorded frame.
 struct Recording {
@@ -46,4 +46,4 @@ class Detector {
   std::shared_ptr<Image<double> const> glare_;  ///< charge of the glare [e]
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

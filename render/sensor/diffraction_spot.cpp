@@ -7,7 +7,7 @@
 #include "render/base/image.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 namespace {
 
 /// Returns the irradiance of the Airy pattern relative to its peak (Born & Wolf, section 8.5.2).
@@ -71,4 +71,4 @@ AiryTable::AiryTable(double scale_px)
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

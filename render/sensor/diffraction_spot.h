@@ -7,7 +7,7 @@
 #include "render/base/vec.h"
 #include "render/sensor/error_function.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// Size of the diffraction-limited PSF of a circular pupil in incoherent light, in multiples of N (1 + M) lambda
 /// (Adrian & Yao 1985; Raffel et al. 2018, section 2). Eq. 8 of Rajendran et al. (2019) has a superfluous factor pi.
@@ -156,4 +156,4 @@ class AiryTable {
   std::vector<double> shares_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

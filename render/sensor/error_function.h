@@ -2,7 +2,7 @@
 
 #include "render/base/lanes.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// Replaces each x by erf(x), for K rows of N numbers, without branches. Uses x P(2 x^2/25 - 1), where P of degree 26
 /// interpolates at the Chebyshev points of |x| <= 5; beyond that range erf is one (erfc(5) = 1.5e-12). The error is
@@ -37,4 +37,4 @@ template <class T, int N, int K>
   for (int i = 0; i < K; ++i) x[i] = x[i] * (odd[i] * y[i] + (even[i] * yy[i] + Row::all(T(coefficients[0]))));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

@@ -6,7 +6,7 @@
 #include "render/base/random_variates.h"
 #include "render/sensor/pixel_noise.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// Output of one pixel.
 struct PixelLevel {
@@ -112,4 +112,4 @@ struct PixelDetector {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

@@ -8,7 +8,7 @@
 
 /// Noise of a pixel as quantiles of uniform random numbers, for host and device. A quantile takes one random number.
 /// Functions without branches, loops of fixed length apart, are vectorised by the compiler for blocks of pixels.
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// Returns the IEEE 754 representation of a number.
 GLADSTONE_HD inline std::uint64_t bits_of(double value) {
@@ -160,4 +160,4 @@ GLADSTONE_HD inline double draw_electrons(double charge, double u) {
                                                    : PoissonQuantile::summed(charge, u);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

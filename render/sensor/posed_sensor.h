@@ -4,7 +4,7 @@
 #include "render/base/in_scalar.h"
 #include "render/base/pose.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// Brown's (1971) distortion in OpenCV's convention, on undistorted positions (x, y) / z_i, x right and y down:
 /// x' = x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2), y' = y (1 + k1 r^2 + k2 r^4) + p1 (r^2 + 2 y^2) + 2 p2 x
@@ -65,4 +65,4 @@ struct PosedSensor {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline sensor {
 
 /// Sensor plane perpendicular to the optical axis.
 template <class T>
@@ -24,4 +24,4 @@ struct Sensor {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sensor

@@ -4,7 +4,7 @@
 #include "render/setup/setup_reading.h"
 
 /// Array readers of SetupTable.
-namespace gladstone {
+namespace gladstone::inline setup {
 using namespace setup_reading;
 namespace {
 
@@ -144,4 +144,4 @@ void SetupTable::resolve(std::string const& key, std::vector<double> const& valu
   settle(*state_, path_, key, array_text(values, [](double value) { return toml_text(value); }));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

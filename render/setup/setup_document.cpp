@@ -10,7 +10,7 @@
 #include "render/base/text.h"
 #include "render/setup/setup_state.h"
 
-namespace gladstone {
+namespace gladstone::inline setup {
 namespace {
 
 constexpr std::size_t longest_assignment = 200;  // characters of a --set shown in messages
@@ -366,4 +366,4 @@ SetupDocument SetupDocument::copy() const { return SetupDocument(std::make_uniqu
 
 std::string const& SetupDocument::folder() const { return state_->folder; }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

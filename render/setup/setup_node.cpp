@@ -8,7 +8,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline setup {
 namespace {
 
 SetupPlace place_of(toml::source_region const& region) {
@@ -223,4 +223,4 @@ std::string kind_name(SetupNode const& node) {
   return {};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline setup {
 
 /// Origin of setup values that were included from a file other than the setup itself.
 struct SetupSource {
@@ -85,4 +85,4 @@ std::string toml_key(std::string const& key);
 /// Name of a value's kind for messages: "a text", "an array" ...
 std::string kind_name(SetupNode const& node);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

@@ -2,7 +2,7 @@
 
 #include "render/setup/setup_node.h"
 
-namespace gladstone {
+namespace gladstone::inline setup {
 namespace {
 
 bool has_values(SetupRecord const& record) {
@@ -72,4 +72,4 @@ std::string resolved_toml(SetupRecord const& root) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline setup {
 
 /// Record of all keys that were requested from one table of a setup, in the order of the requests: which were read, and
 /// the value used for each. Keys of the setup that are missing here are unknown; the record is also the source of the
@@ -34,4 +34,4 @@ struct SetupRecord {
 /// Formats a record as TOML: the keys of a table before its sub-tables, each in the order of reading.
 std::string resolved_toml(SetupRecord const& root);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

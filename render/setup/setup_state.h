@@ -7,7 +7,7 @@
 #include "render/setup/setup_record.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline setup {
 
 /// Location and absolute path of a value that is a file name.
 struct SetupFileName {
@@ -42,4 +42,4 @@ struct SetupDocument::State {
 /// Formats a path: "medium.field[0].kind".
 std::string dotted_path(std::vector<std::string> const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

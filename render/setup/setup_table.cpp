@@ -5,7 +5,7 @@
 #include "render/base/nearest_name.h"
 #include "render/setup/setup_reading.h"
 
-namespace gladstone {
+namespace gladstone::inline setup {
 using namespace setup_reading;
 namespace {
 
@@ -245,4 +245,4 @@ std::string SetupTable::where(std::string const& key) const {
   return state_->where(key.empty() ? path_ : below(path_, key));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

@@ -11,7 +11,7 @@
 #include "render/base/error.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline setup {
 
 class SetupTable;
 struct SetupNode;
@@ -203,4 +203,4 @@ class SetupTable {
   std::vector<std::string> path_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

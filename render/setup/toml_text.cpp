@@ -5,7 +5,7 @@
 #include "render/setup/setup_node.h"
 
 /// Formatting of setup values as TOML.
-namespace gladstone {
+namespace gladstone::inline setup {
 namespace {
 
 bool is_bare_key(std::string const& key) {
@@ -97,4 +97,4 @@ std::string toml_document(SetupNode const& node) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline setup

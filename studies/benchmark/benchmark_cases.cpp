@@ -13,7 +13,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 constexpr int case_pixels = 1024;
@@ -222,4 +222,4 @@ std::vector<BenchmarkCase> const& benchmark_cases() {
   return cases;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

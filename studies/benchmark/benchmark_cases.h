@@ -10,7 +10,7 @@
 #include "studies/benchmark/particle_pair.h"
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 
 /// Displacement [px] as a function of position [px], in the central definition that symmetric schemes measure.
 using DisplacementAt = std::function<Vec2d(Vec2d position_px)>;
@@ -88,4 +88,4 @@ class RefractedTurbulence {
   RenderedCase rendered_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -9,7 +9,7 @@
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/compare/correlate.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 constexpr int coverage_pixels = RefractedTurbulence::pixels;
@@ -93,4 +93,4 @@ std::vector<CoverageRow> measure_coverage(int seeds, Backend const& device) {
   return rows;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

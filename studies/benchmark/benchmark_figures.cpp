@@ -5,10 +5,10 @@
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/drawing/draw_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 /// Returns true for the default and the estimators that are only points of the curve of settings.
 bool is_on_curve(std::string const& name) {
@@ -111,4 +111,4 @@ std::vector<std::string> draw_benchmark(BenchmarkResult const& result, std::stri
   return drawn;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -8,7 +8,7 @@
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/compare/correlate.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 constexpr int learning_pixels = 512;
@@ -67,4 +67,4 @@ UncertaintyCombination learn_combination(Backend const& device) {
   return fit_combination(samples, methods);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

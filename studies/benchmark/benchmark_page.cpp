@@ -8,7 +8,7 @@
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/case/version_text.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 bool is_of_curve(std::string const& name) {
@@ -223,4 +223,4 @@ ReportPage benchmark_page(BenchmarkResult const& result, std::string const& fold
   return page;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -6,7 +6,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/version_text.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 bool is_whole(std::string_view measure) {
@@ -91,4 +91,4 @@ std::string benchmark_csv(BenchmarkResult const& result) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

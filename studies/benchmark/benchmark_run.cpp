@@ -18,7 +18,7 @@
 #include "studies/case/case_files.h"
 #include "studies/compare/correlate.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,4 +190,4 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Backend const& de
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -11,7 +11,7 @@
 #include "studies/case/backend.h"
 #include "studies/report/report_page.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 
 /// Named correlation settings that the benchmark evaluates.
 struct BenchmarkEstimator {
@@ -144,4 +144,4 @@ std::vector<std::string> draw_benchmark(BenchmarkResult const& result, std::stri
 inline constexpr char const* noise_case = "noise_5";
 inline constexpr char const* gain_case = "sine_64";
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -5,7 +5,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 bool is_inside(Vec2d at, int columns, int rows) {
@@ -74,4 +74,4 @@ std::vector<std::pair<std::string_view, double>> score_measures(BenchmarkScore c
   return measures;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -11,7 +11,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "studies/benchmark/benchmark_cases.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 
 /// Width of the border in which vectors are ignored, since codes treat it differently [px].
 inline constexpr double benchmark_border_px = 32.0;
@@ -46,4 +46,4 @@ std::vector<Vec2d> truth_at_vectors(DisplacementField const& field, Displacement
 /// Returns the numbers of a score with their names in benchmark.json and benchmark.csv.
 std::vector<std::pair<std::string_view, double>> score_measures(BenchmarkScore const& score);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

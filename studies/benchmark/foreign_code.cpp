@@ -11,7 +11,7 @@
 #include "render/base/error.h"
 #include "studies/compare/compared_vectors.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -193,4 +193,4 @@ std::string reason_to_reject_gaps(DisplacementField const& field, int columns, i
       expected - field.size());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -8,7 +8,7 @@
 #include "analysis/vectors/joint_detection.h"
 #include "studies/benchmark/benchmark_run.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 
 /// Finds the vector files of an external code: paths by the name of their case.
 /// @throws DataError if the folder contains no such file
@@ -57,4 +57,4 @@ class ForeignCode {
 /// the vectors are scattered.
 std::string reason_to_reject_gaps(DisplacementField const& field, int columns, int rows);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -10,7 +10,7 @@
 #include "render/base/frame_pair.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 
 /// Pair of particle images with a displacement that is known everywhere.
 struct ParticlePair : FramePair<double> {
@@ -101,4 +101,4 @@ inline ParticlePair render_particle_pair(ParticleSettings const& settings,
   return pair;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

@@ -12,7 +12,7 @@
 #include "studies/case/shared_folder.h"
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline benchmarks {
 namespace {
 
 /// Spacing of the truth: a seventh of the light cone's width at the medium, in image coordinates.
@@ -70,4 +70,4 @@ DisplacementAt RefractedTurbulence::truth() const {
   return [map](Vec2d p) { return map->at(p); };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline benchmarks

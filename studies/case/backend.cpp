@@ -15,7 +15,7 @@
 #include "studies/case/pair_source.h"
 #include "studies/case/version_text.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Creates the correlator of a GPU; for settings it does not support, that of the CPU, unless only the GPU is allowed.
@@ -105,4 +105,4 @@ std::string version_json() {
       .dump(2);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -11,7 +11,7 @@
 #include "render/ideal_images/pair_batch.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Renderer and correlator of the device on which a command runs: the CPU's cores or a GPU.
 struct Backend {
@@ -50,4 +50,4 @@ int gpu_count();
 /// Returns whether the first GPU is usable.
 bool gpu_is_usable();
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -20,7 +20,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/warning_json.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 constexpr std::uint64_t least_rays = 1024, most_rays = 65536;  // limits of the number of rays per dot chosen by "auto"
@@ -213,4 +213,4 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
   return summary;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -8,7 +8,7 @@
 #include "render/files/hdf5_file.h"
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Monte Carlo error of the dot images' positions. Some dots are traced twice with independent random numbers; the
 /// difference of two independent positions is sqrt(2) times the error of either.
@@ -51,4 +51,4 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
 /// Writes truth.h5 of a calibration: /dots, /planes and, if the camera is a pinhole, /pinhole (docs/file-formats.md).
 void write_calibration_truth(std::string const& path, RenderedCalibration const& rendered, FileOrigin const& origin);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -6,7 +6,7 @@
 #include "render/scene/calibration_planes.h"
 #include "studies/case/calibration_case.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Writes the datasets of /pinhole.
@@ -96,4 +96,4 @@ void write_calibration_truth(std::string const& path, RenderedCalibration const&
   file.close();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -14,7 +14,7 @@
 #include "studies/case/case.h"
 #include "studies/case/case_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 using Kind = SetupNode::Kind;
@@ -204,4 +204,4 @@ std::vector<CameraCase> camera_cases(SetupDocument const& setup) {
   return cases;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -5,7 +5,7 @@
 
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Setup of one camera of a multi-camera setup, rendered as a separate case.
 struct CameraCase {
@@ -28,4 +28,4 @@ std::vector<CameraCase> camera_cases(SetupDocument const& setup);
 /// [[window]]. A setup with several cameras is returned unchanged.
 SetupDocument with_own_lens(SetupDocument setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -23,7 +23,7 @@
 #include "studies/case/usual_values.h"
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 constexpr double least_displacement_px = 1e-6;  // displacements below this value count as zero
@@ -96,7 +96,7 @@ void warn_of_field(Scene const& scene, Warnings& warnings) {
 /// Warns if the defocus of ideal images is neglected although it is visible, or approximated with a visible error.
 void warn_of_blur(Scene const& scene, Warnings& warnings) {
   if (resolve_render_method(scene) != RenderMethod::formula) return;
-  IdealImages const ideal = *ideal_images(scene);
+  IdealImages const ideal = *build_ideal_images(scene);
   double const blur = ideal.largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
   if (scene.setup.has_ideal_particles()) {
     if (blur < 0.5 * spot) return;
@@ -267,4 +267,4 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   }
   return prepared;
 }
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

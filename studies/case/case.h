@@ -19,7 +19,7 @@
 #include "studies/case/case_files.h"
 #include "studies/case/uncertain_inputs.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Tables of a design question, which a setup may contain. Rendering and correlation ignore them.
 inline constexpr std::array design_tables{"requirements", "limits", "inventory", "free", "correlations"};
@@ -146,4 +146,4 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
 nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                           RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -12,7 +12,7 @@
 #include "studies/case/cameras.h"
 #include "studies/case/rendered_sequence_folder.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ std::string in_case(std::string const& folder, std::string const& name) {
   return (fs::path(folder) / name).string();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

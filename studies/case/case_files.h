@@ -6,7 +6,7 @@
 
 #include "render/files/folder_replacement.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// File names of a CASE folder.
 namespace case_file {
@@ -58,4 +58,4 @@ void require_case(std::string const& folder);
 /// @throws DataError if it holds several cameras or a calibration; as require_case()
 std::string in_case(std::string const& folder, std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

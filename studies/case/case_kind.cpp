@@ -3,7 +3,7 @@
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 CaseKind const& case_kind(Setup const& setup) {
   for (CaseKind const* one : all_case_kinds)
@@ -17,4 +17,4 @@ void require_experiment(Setup const& setup, Experiment const& needed, std::strin
   if (&setup.experiment() != &needed) throw DataError(ErrorCode::wrong_format, name, refusal);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

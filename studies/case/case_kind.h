@@ -12,7 +12,7 @@
 #include "studies/case/peak_locking.h"
 #include "studies/case/render_setup.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Writes the files of a rendered case into a folder.
 /// @return the contents of summary.json
@@ -64,4 +64,4 @@ CaseKind const& case_kind(Setup const& setup);
 void require_experiment(Setup const& setup, Experiment const& needed, std::string const& name,
                         std::string const& refusal);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -12,7 +12,7 @@
 #include "studies/case/lens_glasses.h"
 #include "studies/case/warning_json.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Returns minimum, median and maximum.
@@ -149,4 +149,4 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
   return summary;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

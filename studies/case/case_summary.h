@@ -4,10 +4,10 @@
 
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Returns the contents of summary.json, whose keys are defined in docs/file-formats.md.
 nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                             RecordedFrames const& frames, CaseOutcome const& outcome);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

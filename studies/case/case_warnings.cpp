@@ -13,7 +13,7 @@
 #include "render/sensor/detector.h"
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 std::string levels_unit(int bits) { return fmt::format("grey levels of {} bits", bits); }
@@ -294,4 +294,4 @@ RenderedOutcome warn_of_rendering(Warnings& warnings, PreparedCase const& prepar
   return outcome;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -11,7 +11,7 @@
 #include "studies/case/case.h"
 
 /// Warnings about a rendered case, with remedies.
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Logs a warning and appends it to `warnings`, which are stored in summary.json.
 void warn(Warnings& warnings, Warning warning);
@@ -63,4 +63,4 @@ void warn_of_exposure(Warnings& warnings, Scene const& scene, double exposure_e,
 RenderedOutcome warn_of_rendering(Warnings& warnings, PreparedCase const& prepared, RenderedCase const& rendered,
                                   RecordedFrames const& frames);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 std::optional<Eigen::MatrixXd> correlation_factor(Eigen::MatrixXd const& coefficients) {
   constexpr double rounding = 1e-12;
@@ -22,4 +22,4 @@ std::optional<Eigen::MatrixXd> correlation_factor(Eigen::MatrixXd const& coeffic
   return factor;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -8,7 +8,7 @@
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/subpixel_fit.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 TrackingTable read_tracking_table(SetupTable table) {
@@ -76,4 +76,4 @@ CorrelationSettings read_correlation_settings(SetupTable table, PreparedSet set)
   return settings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -10,7 +10,7 @@
 #include "render/scene/particle_scene.h"
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -194,4 +194,4 @@ ExpectedParticles expected_particles(Setup const& setup) {
   return expected;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

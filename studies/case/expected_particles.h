@@ -2,7 +2,7 @@
 
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Distribution of a quantity over the particles of a setup: 5th percentile, median and 95th percentile.
 struct SizeSpread {
@@ -59,4 +59,4 @@ ExpectedParticleImage particle_image(Setup const& setup);
 /// @throws DataError for an invalid file of diameters or particles
 ExpectedParticles expected_particles(Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -6,7 +6,7 @@
 #include "render/base/image.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Returns the components of vectors one after another, as datasets of HDF5 files have them.
 inline std::span<double const> flat(std::span<Vec2d const> values) {
@@ -18,4 +18,4 @@ inline std::span<double const> flat(Image<Vec2d> const& image) {
   return flat(std::span<Vec2d const>(image.data(), image.size()));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

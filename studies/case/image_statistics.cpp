@@ -6,7 +6,7 @@
 
 #include "render/files/image_file.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Mean and mask response of the 3 x 3 neighbourhood of every inner pixel.
@@ -141,4 +141,4 @@ double measure_dot_diameter_px(Image<double> const& image) {
   return dot_diameter_px(image, mean, noise_level(flat_neighbourhoods(image, contrast_sign(image, mean))));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -4,7 +4,7 @@
 
 #include "render/base/image.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Statistics of one image of dots, estimated from the image itself; NaN: cannot be estimated.
 struct ImageStatistics {
@@ -32,4 +32,4 @@ ImageStatistics image_statistics(Image<double> const& image);
 /// Measures ImageStatistics::dot_diameter_px only.
 double measure_dot_diameter_px(Image<double> const& image);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

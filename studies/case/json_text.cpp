@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 std::string json_text(nlohmann::json const& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -17,4 +17,4 @@ nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

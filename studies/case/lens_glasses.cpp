@@ -12,7 +12,7 @@
 #include "render/optics/glass_name.h"
 #include "render/optics/lens_media.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 std::string full_name(Glass const& glass) { return fmt::format("{}:{}", glass.catalogue, glass.name); }
@@ -91,4 +91,4 @@ std::string lens_glasses_text(std::vector<LensGlass> const& glasses) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -6,7 +6,7 @@
 
 #include "render/optics/lens.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Glass of a lens: how its file names it, and which glass was taken.
 struct LensGlass {
@@ -28,4 +28,4 @@ nlohmann::json lens_glasses_json(std::vector<LensGlass> const& glasses);
 /// Returns one line for each glass: "N-BK7 behind surface 1: SCHOTT:N-BK7 (...), n = 1.5168".
 std::string lens_glasses_text(std::vector<LensGlass> const& glasses);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -2,7 +2,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 std::optional<PaperLight> read_light(SetupTable root) {
   SetupTable table = root.table("light");
@@ -20,4 +20,4 @@ double exposure_from_light(PaperLight const& light, Setup const& setup) {
                              setup.camera.noise.quantum_efficiency);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -2,7 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// RAII guard that silences log messages below `error`, for internally constructed setups and for warnings that are
 /// reported elsewhere.
@@ -17,4 +17,4 @@ class LogSilencer {
   spdlog::level::level_enum level_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

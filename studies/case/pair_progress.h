@@ -5,7 +5,7 @@
 
 #include "render/base/progress.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Shows the progress over the pairs of a sequence and, meanwhile, disables that of the steps of each pair.
 class PairProgress {
@@ -26,4 +26,4 @@ class PairProgress {
   ProgressMonitor::Scope scope_{of_steps_};
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

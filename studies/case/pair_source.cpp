@@ -12,7 +12,7 @@
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Reads a setup completely. @throws DataError if it has several cameras
@@ -83,4 +83,4 @@ std::unique_ptr<PairBatchRenderer> PairSource::open(std::vector<OwnedPairModel> 
   return on_gpu_ ? open_pair_batches(models) : make_host_pair_batches(models);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

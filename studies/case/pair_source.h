@@ -7,7 +7,7 @@
 #include "render/ideal_images/pair_batch.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Setup of one camera of which pairs of ideal particle images are rendered in batches, each pair with other values of
 /// some keys. Its functions may be called from several threads at once.
@@ -43,4 +43,4 @@ class PairSource {
 /// Returns the index of the GPU whose memory contains an address, as this process counts GPUs; -1: host memory.
 int gpu_of_memory(void const* address);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

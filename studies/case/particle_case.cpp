@@ -11,7 +11,7 @@
 #include "render/scene/particle_scene.h"
 #include "studies/case/truth_columns.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 constexpr std::array<TruthColumn, 7> particle_columns{{
@@ -132,9 +132,10 @@ nlohmann::json particle_summary(Scene const& scene, GroundTruth const& truth, do
       {"photons", spread_of_light(photons)},
       {"electrons_per_photon", exposure_e / scene.photon_unit},
       {"path", {{"steps", path.steps}, {"error_px", path.error / px}, {"lag_error_px", path.lag_error / px}}}};
-  if (auto const ideal = ideal_images(scene)) particles["largest_blur_px"] = ideal->largest_blur_px(scene.particles);
+  if (auto const ideal = build_ideal_images(scene))
+    particles["largest_blur_px"] = ideal->largest_blur_px(scene.particles);
   if (scene.mie) particles["scattering_table_error"] = scene.mie->error();
   return {{"particles", particles}, {"photons_fully_lit", scene.photon_unit}};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -6,7 +6,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Writes truth.h5 of PIV: /particles and /rays (docs/file-formats.md).
 void write_particle_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
@@ -21,4 +21,4 @@ nlohmann::json particle_summary(Scene const& scene, GroundTruth const& truth, do
 /// @throws DataError if the file is invalid
 GroundTruth read_particle_truth(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -10,7 +10,7 @@
 #include "studies/case/image_statistics.h"
 #include "studies/case/random_error.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 constexpr double usual_dots = 20;      // dots per window assumed for the expected error
@@ -132,4 +132,4 @@ std::optional<Warning> locking_advice(Image<double> const& frame) {
                              min_image_px, wide.locking_error_px())};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -6,7 +6,7 @@
 #include "render/base/warning.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Image diameters of dots or particles, and the peak-locking error that they cause.
 struct ImageDiameters {
@@ -44,4 +44,4 @@ std::optional<Warning> locking_advice(Setup const& setup);
 /// of 1/12 px^2, which is subtracted.
 std::optional<Warning> locking_advice(Image<double> const& frame);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

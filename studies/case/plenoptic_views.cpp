@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 PlenopticCamera PlenopticCamera::of(Setup const& setup, std::string const& where) {
   auto const refuse = [&where](std::string const& why) { throw DataError(ErrorCode::unsupported, where, why); };
@@ -102,4 +102,4 @@ std::vector<Vec2d> stop_positions(double diameter, int across) {
   return places;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -8,7 +8,7 @@
 #include "render/optics/elements/lenslets.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Geometry of a plenoptic camera: ideal thin lens, lenslets in its image plane, and the sensor behind them.
 struct PlenopticCamera {
@@ -82,4 +82,4 @@ struct ViewsWritten {
 ViewsWritten write_views(std::string const& case_folder, std::string const& folder, int across,
                          std::optional<double> refocus_z);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -6,7 +6,7 @@
 
 #include "analysis/preparation/frame_changes.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Preparation that is being read, and the frames that it is for.
@@ -144,4 +144,4 @@ FramePreparation read_frame_preparation(SetupTable& correlate, PreparedSet set) 
   return preparation;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -3,7 +3,7 @@
 #include "analysis/preparation/frame_preparation.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Frames that are prepared together.
 enum class PreparedSet {
@@ -15,4 +15,4 @@ enum class PreparedSet {
 /// @param correlate  table [correlate]; problems are collected in its document
 FramePreparation read_frame_preparation(SetupTable& correlate, PreparedSet set = PreparedSet::pair);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

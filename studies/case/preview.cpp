@@ -10,7 +10,7 @@
 #include "render/scene/calibration_planes.h"
 #include "render/scene/particle_scene.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Returns the pixel of the strongest density gradient in view.
@@ -133,4 +133,4 @@ Image<std::uint8_t> preview_picture(CasePreview const& preview, int bit_depth) {
   return picture;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

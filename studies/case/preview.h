@@ -6,7 +6,7 @@
 #include "render/scene/renderer.h"
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// A part of a case's images, rendered alone.
 struct CasePreview {
@@ -37,4 +37,4 @@ CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer);
 /// @param bit_depth  bit depth of the grey levels
 Image<std::uint8_t> preview_picture(CasePreview const& preview, int bit_depth);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

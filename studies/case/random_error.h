@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Range of parameters in which the random error was measured.
 struct RandomErrorRange {
@@ -54,4 +54,4 @@ T random_error_px(T geometric_px, T spot_px, T noise, double dots) {
   return sqrt(pattern * pattern + part * part * (20 / dots));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -13,7 +13,7 @@
 #include "render/light/number_table.h"
 #include "render/scene/trace_ray.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Normalizes a direction, scaling by its largest component first to avoid overflow and underflow of its square.
@@ -149,4 +149,4 @@ std::string traced_rays_csv(std::vector<TracedRay> const& rays) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

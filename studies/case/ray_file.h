@@ -5,7 +5,7 @@
 
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// End of the traced path: after the medium, after the lens, or at the sensor.
 enum class Through { medium, optics, all };
@@ -37,4 +37,4 @@ std::vector<TracedRay> trace_rays(Scene const& scene, double step, std::vector<R
 /// Formats rays as CSV: status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px with 17 significant digits.
 std::string traced_rays_csv(std::vector<TracedRay> const& rays);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

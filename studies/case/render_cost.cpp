@@ -11,7 +11,7 @@
 #include "render/scene/ray_budget.h"
 #include "studies/case/case_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Returns a medium in which rays need as many steps as in that of a setup, without reading a field.
@@ -84,7 +84,7 @@ RenderCost estimate_render_cost(Setup const& setup) {
     double const media = scene.second_medium ? 2 : 1;
     cost.processor_seconds = media * cost.sources * cost.rays_per_source * ray_seconds(scene, plan);
     if (cost.rays_are_largest) cost.expected_rays = kind.expected_rays(setup, cost.rays_per_source);
-  } else if (by_table && !focused_dots(scene)) {  // refused by render, with the reason
+  } else if (by_table && !build_focused_dots(scene)) {  // refused by render, with the reason
     cost.processor_seconds = not_measured;
   } else {
     cost.processor_seconds = images * render_seconds(scene, plan, planes ? RenderTheory::no : RenderTheory::yes);
@@ -103,4 +103,4 @@ double expected_render_seconds(Scene const& scene, RenderPlan const& plan, Rende
   return longest * expected_rays(scene.setup, most) / most;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -6,7 +6,7 @@
 #include "render/scene/scene.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Expected cost of rendering a setup, estimated without reading fields or tracing rays.
 struct RenderCost {
@@ -37,4 +37,4 @@ RenderCost estimate_render_cost(Setup const& setup);
 /// numbers of particles with the number of rays that it expects.
 double expected_render_seconds(Scene const& scene, RenderPlan const& plan, RenderTheory theory);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

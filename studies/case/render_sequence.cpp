@@ -32,7 +32,7 @@
 #include "studies/case/warning_json.h"
 #include "studies/case/warning_kinds.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 namespace fs = std::filesystem;
@@ -332,4 +332,4 @@ RenderedSequence SequenceRenderer::render(Renderer& renderer, std::string const&
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

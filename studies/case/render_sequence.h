@@ -7,7 +7,7 @@
 #include "render/base/warning.h"
 #include "studies/case/render_setup.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Result of rendering a sequence.
 struct RenderedSequence {
@@ -54,4 +54,4 @@ class SequenceRenderer {
   std::size_t first_pair_ = 0, pair_count_ = 0;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

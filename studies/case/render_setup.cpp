@@ -13,7 +13,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/sequence_pair.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,4 +120,4 @@ std::string SetupRenderer::written() const {
   return document.written();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

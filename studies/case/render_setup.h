@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "render/files/output_folder.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// One camera's entry in the report of a rendering.
 struct RenderedCamera {
@@ -80,7 +81,7 @@ class SetupRenderer {
   /// Renders one camera's case into its part of the output folder.
   /// @return the contents of its summary.json
   nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
-                                    BuiltMedium& medium, class OutputFolder const& output, RenderedCamera& entry,
+                                    BuiltMedium& medium, OutputFolder const& output, RenderedCamera& entry,
                                     SharedParts::OfCamera const& shared) const;
 
   std::string path_;
@@ -88,4 +89,4 @@ class SetupRenderer {
   std::vector<OneCamera> cameras_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

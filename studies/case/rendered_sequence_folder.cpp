@@ -11,7 +11,7 @@
 #include "render/files/output_file.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ std::map<std::size_t, Json> read_finished_pairs(fs::path const& folder) {
   return pairs;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

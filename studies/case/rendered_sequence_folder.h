@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// File and folder names in the output folder of a rendered sequence.
 namespace rendered_sequence_file {
@@ -31,4 +31,4 @@ std::map<std::size_t, nlohmann::ordered_json> read_finished_pairs(std::filesyste
 /// @throws OutputError
 void give_second_name(std::filesystem::path const& file, std::filesystem::path const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

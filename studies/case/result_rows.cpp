@@ -9,7 +9,7 @@
 
 #include "studies/case/json_text.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Quotes a field of CSV if it contains a comma, a quote or a line break.
@@ -82,4 +82,4 @@ std::string groups_text(std::string const& heading, std::vector<ResultGroup> con
   return header + '\n' + text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

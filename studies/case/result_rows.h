@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Rating of a value against the usual recommendation.
 enum class Margin {
@@ -58,4 +58,4 @@ struct ResultGroup {
 /// @param digits   number of significant digits
 std::string groups_text(std::string const& heading, std::vector<ResultGroup> const& groups, int digits = 4);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

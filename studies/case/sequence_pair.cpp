@@ -11,7 +11,7 @@
 #include "render/files/file_pattern.h"
 #include "render/setup/setup_node.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Value of medium.field.file if the file of the pair cannot be determined: it exists, so that the problem of
@@ -104,4 +104,4 @@ void select_pair(SetupDocument& setup) {
   setup.set({"sequence"}, sequence);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -5,7 +5,7 @@
 
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Returns true if a setup describes all pairs of a sequence: it has a table [sequence] without the key `pair`.
 bool describes_sequence(SetupDocument const& setup);
@@ -20,4 +20,4 @@ std::vector<std::string> sequence_fields(SetupDocument& setup);
 /// not changed.
 void select_pair(SetupDocument& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -7,7 +7,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 std::string shared_folder() {
   namespace fs = std::filesystem;
@@ -28,4 +28,4 @@ std::string shared_folder() {
                   "studies/cases/table1.toml does not exist (incomplete installation); install gladstone again");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

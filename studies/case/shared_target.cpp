@@ -6,7 +6,7 @@
 #include "render/base/units.h"
 #include "render/setup/setup_node.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 SetupNode pair(Vec2d numbers) { return setup_array({setup_number(numbers.x), setup_number(numbers.y)}); }
@@ -63,4 +63,4 @@ void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

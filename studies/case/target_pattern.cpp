@@ -10,7 +10,7 @@
 #include "render/base/units.h"
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 constexpr double side_margin_mm = 10, bottom_margin_mm = 20, least_width_mm = 110;
@@ -190,4 +190,4 @@ std::string target_csv(TargetPattern const& pattern) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -5,7 +5,7 @@
 
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Dots of a target for printing, exactly those that the renderer uses (build_target()).
 struct TargetPattern {
@@ -39,4 +39,4 @@ std::string target_pdf(TargetPattern const& pattern);
 /// Formats the centres as a table x_mm,y_mm, which target.kind = "points" reads.
 std::string target_csv(TargetPattern const& pattern);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

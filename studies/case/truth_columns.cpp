@@ -4,7 +4,7 @@
 #include "render/method.h"
 #include "studies/case/flat_values.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 void write_sources(Hdf5Writer& file, Hdf5Axes& axes, TruthGroup const& group, Rendering const& rendering) {
   GroundTruth const& truth = rendering.truth;
@@ -65,4 +65,4 @@ void require_length(std::string const& path, std::string const& dataset, std::si
                       " are required; render the case again");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -8,7 +8,7 @@
 #include "render/scene/renderer.h"
 
 /// Common structure of the groups /dots and /particles of truth.h5.
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Dataset with two numbers per source, in GroundTruth or, of particles only, in ParticleTruth.
 struct TruthColumn {
@@ -51,4 +51,4 @@ void read_sources(Hdf5Reader const& file, std::string const& path, TruthGroup co
 /// @throws DataError if the length of a dataset differs from the one required
 void require_length(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

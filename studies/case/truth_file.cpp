@@ -8,7 +8,7 @@
 #include "studies/case/particle_case.h"
 #include "studies/case/truth_columns.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 constexpr std::array<TruthColumn, 8> dot_columns{{
@@ -154,4 +154,4 @@ FieldMap read_field_map(std::string const& path) {
   return map;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

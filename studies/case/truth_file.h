@@ -6,7 +6,7 @@
 #include "render/scene/field_map.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Writes truth.h5: /dots, /rays, /field (docs/file-formats.md).
 /// @param table  measured errors of the deflection table; null: no table was used
@@ -20,4 +20,4 @@ GroundTruth read_truth(std::string const& path);
 /// Reads the maps of /field.
 FieldMap read_field_map(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

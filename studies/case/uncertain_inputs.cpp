@@ -10,7 +10,7 @@
 #include "render/base/nearest_name.h"
 #include "studies/case/correlation_matrix.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 constexpr std::array<char const*, 4> known_keys{"value", "sigma", "distribution", "degrees_of_freedom"};
@@ -283,4 +283,4 @@ std::string insert_uncertain_inputs(std::string const& text, std::vector<Uncerta
   return toml_document(root);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

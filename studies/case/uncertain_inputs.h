@@ -7,7 +7,7 @@
 #include "render/setup/setup_node.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Probability distribution of an uncertain input about its value.
 enum class InputDistribution { normal, rectangular };
@@ -45,4 +45,4 @@ std::vector<UncertainInput> extract_uncertain_inputs(SetupDocument& document);
 /// @param text  TOML, in which each input's key is a number or missing
 std::string insert_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -9,7 +9,7 @@
 
 #include "render/setup/setup_node.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 /// Unit in which a number may have been given by mistake.
@@ -135,4 +135,4 @@ Warnings unusual_values(SetupDocument& document) {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Returns version and commit of this build, "0.1.0 (a5503eb9ee49)".
 std::string build_text();
@@ -11,4 +11,4 @@ std::string version_text();
 /// Returns version, commit and backends as a JSON object.
 std::string version_json();
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -5,7 +5,7 @@
 
 #include "render/base/warning.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 // JSON files and --json list warnings twice: as texts in `warnings`, and as objects in `warning_records`.
 
@@ -31,4 +31,4 @@ Warnings read_warnings(Json const& json) {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

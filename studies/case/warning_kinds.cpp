@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 void WarningKinds::add(std::string const& pair, Warning const& warning, std::string const& place) {
   auto const [known, is_new] = index_.try_emplace({warning.code, place}, kinds_.size());
@@ -21,4 +21,4 @@ Warnings WarningKinds::summary() const {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

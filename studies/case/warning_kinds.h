@@ -8,7 +8,7 @@
 
 #include "render/base/warning.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Summary of the warnings of many pairs: those with the same code and place are one kind.
 class WarningKinds {
@@ -30,4 +30,4 @@ class WarningKinds {
   std::map<std::pair<WarningCode, std::string>, std::size_t> index_;  ///< index in kinds_
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

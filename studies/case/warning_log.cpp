@@ -2,7 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 thread_local Warning const* being_logged = nullptr;
@@ -21,4 +21,4 @@ void log_warnings(Warnings const& warnings) {
 
 Warning const* warning_being_logged() { return being_logged; }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -2,7 +2,7 @@
 
 #include "render/base/warning.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Writes a warning to the log.
 void log_warning(Warning const& warning);
@@ -12,4 +12,4 @@ void log_warnings(Warnings const& warnings);
 /// another function writes the message.
 Warning const* warning_being_logged();
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

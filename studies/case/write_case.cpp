@@ -23,7 +23,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/render_cost.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 void hash_inputs(CaseSetup& loaded) {
   std::vector<std::string> const files = loaded.document.file_names();
@@ -160,4 +160,4 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
                     folder);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -14,7 +14,7 @@
 #include "studies/case/plenoptic_views.h"
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ ViewsWritten write_views(std::string const& case_folder, std::string const& fold
   return written;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -13,7 +13,7 @@
 #include "render/base/nearest_name.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Returns the sub-commands parsed so far, such as "sweep run ".
@@ -115,4 +115,4 @@ std::string refusal(CLI::App const* app, CLI::Error const& error) {
                      command_path(app));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Validators of option values; refusal() formats their messages.
 CLI::Validator one_of(std::vector<std::string> words);
@@ -23,4 +23,4 @@ std::string find_argument(CLI::Error const& error);
 /// Formats the error message for an invalid command line: one line with describe_problem() and the help command.
 std::string refusal(CLI::App const* app, CLI::Error const& error);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

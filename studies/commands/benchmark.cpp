@@ -18,7 +18,7 @@
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/draw_or_warn.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

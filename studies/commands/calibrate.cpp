@@ -17,7 +17,7 @@
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/draw_or_warn.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

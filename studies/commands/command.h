@@ -9,7 +9,7 @@ namespace CLI {
 class App;
 }
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Exit codes of the executable.
 enum ExitCode : int {
@@ -75,4 +75,4 @@ void print_result(GlobalOptions const& options, std::string const& json, std::st
 /// Prints a line on stderr and ignores errors, such as a closed or full stderr.
 void print_error(std::string const& text);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

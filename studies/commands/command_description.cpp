@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Returns the words of one_of() in the type of an option: "TEXT:{auto,cpu,cuda}".
@@ -61,4 +61,4 @@ bool takes_setup_key(CommandDescription const& command, ArgumentDescription cons
   return argument.names.back() == "--set" || (command.path == "keys" && argument.names.back() == "pattern");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

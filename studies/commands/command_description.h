@@ -7,7 +7,7 @@ namespace CLI {
 class App;
 }
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Option or positional argument of a command, as --help shows it.
 struct ArgumentDescription {
@@ -51,4 +51,4 @@ std::string fish_completion(CommandDescription const& program);
 /// Returns the manual page gladstone(1) in roff (macros of man(7)).
 std::string manual_page(CommandDescription const& program);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -24,7 +24,7 @@
 #include "studies/figures/comparison_figures.h"
 #include "studies/figures/draw_or_warn.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 namespace {
 
@@ -186,4 +186,4 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

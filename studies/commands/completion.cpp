@@ -6,7 +6,7 @@
 #include "studies/commands/command.h"
 #include "studies/commands/command_description.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 CommandBody attach_completion(CLI::App& app, GlobalOptions const& options) {
   app.footer(app.get_footer() +
@@ -30,4 +30,4 @@ CommandBody attach_completion(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

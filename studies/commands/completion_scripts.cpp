@@ -5,7 +5,7 @@
 #include "studies/commands/command_description.h"
 #include "studies/commands/setup_keys.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Returns the paths of all keys of setups and studies, sorted.
@@ -281,4 +281,4 @@ end
                      fmt::join(key_paths(), " "), fish_command(program));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

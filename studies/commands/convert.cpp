@@ -19,7 +19,7 @@
 #include "studies/compare/density_table.h"
 #include "studies/compare/exported_vectors.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 void require_ending(std::string const& output, std::vector<std::string> const& endings) {
@@ -141,4 +141,4 @@ CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

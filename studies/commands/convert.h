@@ -6,7 +6,7 @@
 #include "studies/commands/description.h"
 #include "studies/compare/displacement_truth.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Conversion of a file of vectors to another format.
 struct VectorConversion {
@@ -30,4 +30,4 @@ struct ConvertedVectors {
 /// Converts vectors, see load_for_export() and compute_map_for_export(). @throws DataError, OutputError
 ConvertedVectors convert_vectors(VectorConversion const& conversion);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

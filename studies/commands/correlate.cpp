@@ -23,7 +23,7 @@
 #include "studies/commands/command.h"
 #include "studies/commands/correlate_sequence.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
   struct Arguments : SequenceArguments {
@@ -164,4 +164,4 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

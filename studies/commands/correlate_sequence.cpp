@@ -16,7 +16,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/sequence_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ int run_sequence(SequenceArguments const& arguments, GlobalOptions const& option
   return done == pairs.size() ? ok : check_missed;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -5,7 +5,7 @@
 
 #include "studies/commands/command.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Arguments of `gladstone correlate`, except for those of ensembles.
 struct SequenceArguments {
@@ -26,4 +26,4 @@ bool is_sequence(SequenceArguments const& arguments);
 /// Correlates a sequence and prints a summary. @return exit code
 int run_sequence(SequenceArguments const& arguments, GlobalOptions const& options);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -16,7 +16,7 @@
 #include "render/base/error.h"
 #include "studies/commands/arguments.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 [[noreturn]] void refuse_value(char const* option, std::string const& expected, std::string const& given) {
@@ -149,4 +149,4 @@ std::vector<std::string> DensityArguments::words() const {
   return words;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -10,7 +10,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Parses "left", "top:3" or "X0,Y0,X1,Y1" in mm. @throws SetupError
 ReferenceRegion parse_reference(std::string const& text);
@@ -37,4 +37,4 @@ class DensityArguments {
   std::vector<CLI::Option*> added_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

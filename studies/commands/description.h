@@ -5,7 +5,7 @@
 
 #include "studies/case/result_rows.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Result of `gladstone info`.
 struct Description {
@@ -14,4 +14,4 @@ struct Description {
   std::vector<ResultRow> rows = {};  ///< quantities for --csv; empty: the results are no list of quantities
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

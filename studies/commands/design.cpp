@@ -9,7 +9,7 @@
 #include "studies/commands/command.h"
 #include "studies/figures/design_figures.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 struct FigureOptions {
@@ -46,7 +46,7 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   app.add_flag("--csv", *csv, "Print the design sheet as CSV: key, symbol, label, value, unit and source");
   return [request, figures, csv, &options] {
     request->open_device = [&options] { return options.open_device(); };
-    DesignReport const report = design(*request);
+    DesignReport const report = answer_design(*request);
     log_warnings(report.warnings);
     nlohmann::ordered_json json;
     if (!figures->folder.empty()) json["figures"] = draw_design(report, figures->folder, figures->format);
@@ -56,4 +56,4 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

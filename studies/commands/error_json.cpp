@@ -10,7 +10,7 @@
 #include "studies/case/warning_json.h"
 #include "studies/commands/run_warnings.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -75,4 +75,4 @@ Json argument_error_json(std::string const& place, std::string const& message, i
   return with_errors(Json::array({std::move(problem)}), exit_code);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -11,7 +11,7 @@
 #include "render/medium/field_volume.h"
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 nlohmann::json named(std::string const& unit) { return unit.empty() ? nlohmann::json(nullptr) : nlohmann::json(unit); }
@@ -140,4 +140,4 @@ nlohmann::json coverage_json(FieldPlace const& place, std::string const& setup) 
   return {{"share", place.coverage->share}, {"view_mm", {view.x / mm, view.y / mm}}, {"setup", setup}};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

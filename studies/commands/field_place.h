@@ -8,7 +8,7 @@
 #include "render/files/fields/field_file.h"
 #include "render/scene/field_coverage.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// File of a field as it was opened.
 struct FieldFile {
@@ -37,4 +37,4 @@ nlohmann::json units_json(FieldUnits const& units);
 /// Returns the coverage of a setup's view as JSON: {share, view_mm, setup}; null without a setup.
 nlohmann::json coverage_json(FieldPlace const& place, std::string const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -9,7 +9,7 @@
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Raises the largest absolute difference of each component by those between two rows of nodes, `a` and `b`.
@@ -76,4 +76,4 @@ std::vector<FieldStatistics> field_statistics(FieldSource& source) {
   return seen;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -5,7 +5,7 @@
 #include "render/base/vec.h"
 #include "render/files/fields/field_file.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Extremes of one component of a field and of its gradient, in the units of its file.
 struct FieldStatistics {
@@ -20,4 +20,4 @@ struct FieldStatistics {
 /// @throws Interrupted if the user interrupts the command
 std::vector<FieldStatistics> field_statistics(FieldSource& source);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -4,7 +4,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 void check_figure_ending(std::string const& figure) {
   std::error_code error;
@@ -14,4 +14,4 @@ void check_figure_ending(std::string const& figure) {
   throw OutputError(figure, "is not the name of a figure: it must end in .png, .svg or .pdf");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

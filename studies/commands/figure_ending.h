@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Rejects the name of a new file without the ending of a figure (.png, .svg or .pdf). Whether an existing file may be
 /// replaced is checked when it is opened.
@@ -10,4 +10,4 @@ namespace gladstone {
 /// @throws OutputError
 void check_figure_ending(std::string const& figure);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

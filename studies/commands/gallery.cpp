@@ -6,7 +6,7 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/command.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 CommandBody attach_gallery(CLI::App& app, GlobalOptions const& options) {
   auto folder = std::make_shared<std::string>("out/gallery");
@@ -19,4 +19,4 @@ CommandBody attach_gallery(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -12,7 +12,7 @@
 #include "studies/commands/info_particles.h"
 #include "studies/commands/info_setup.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// @param csv  true: prints the quantities as CSV instead of the text
@@ -105,4 +105,4 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

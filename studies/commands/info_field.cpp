@@ -15,7 +15,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/field_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 nlohmann::json json_of(Vec3d const& values) {
@@ -119,4 +119,4 @@ Description describe_field(std::string const& path, std::string const& dataset, 
                       grid.nodes[2], place.spacing_text, values_text(seen, place), reading.text(), place.text)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -4,7 +4,7 @@
 
 #include "studies/commands/description.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Describes a density, refractive-index or velocity field: nodes, units, extent, extremes and steepest gradient
 /// (velocity: of each component).
@@ -16,4 +16,4 @@ namespace gladstone {
 Description describe_field(std::string const& path, std::string const& dataset, std::string const& axes,
                            std::string const& setup, std::string const& figure = "");
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -13,7 +13,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Returns the number of lowest bits that are zero in all pixels. Cameras of 12 bits store their grey levels in 16 bits
@@ -85,4 +85,4 @@ Description describe_image(std::string const& name, Image<double> const& image, 
                                         : "SNR unknown (no noise or no dots detected)")};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -15,7 +15,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/lens_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 constexpr int spot_rays = 2000;
@@ -155,4 +155,4 @@ Description describe_lens(LensQuestion const& question) {
   return {json_text(json), lens_text(question, lens, paraxial, field, glasses), all_rows(paraxial, field)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

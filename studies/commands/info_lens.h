@@ -5,7 +5,7 @@
 
 #include "studies/commands/description.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Arguments of `gladstone info lens`.
 struct LensQuestion {
@@ -19,4 +19,4 @@ struct LensQuestion {
 /// diagrams, distortion, field curvature and vignetting.
 Description describe_lens(LensQuestion const& question);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -16,7 +16,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/mie_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 constexpr double least_relative_index = 0.01;  // lower limit; metals have at least 0.05
@@ -134,4 +134,4 @@ Description describe_mie(MieQuestion const& question) {
   return {json_text(json), text, std::move(rows)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

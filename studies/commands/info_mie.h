@@ -5,7 +5,7 @@
 
 #include "studies/commands/description.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// A homogeneous sphere in a plane wave.
 struct MieQuestion {
@@ -22,4 +22,4 @@ MieQuestion read_mie_question(std::string const& x, std::string const& m);
 /// @throws DataError at the place --x or --m if it is out of range
 Description describe_mie(MieQuestion const& question);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -14,7 +14,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
@@ -105,4 +105,4 @@ Description describe_particles(SetupDocument const& setup, std::string const& na
   return {json_text(json), text, std::move(all)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -5,7 +5,7 @@
 #include "render/setup/setup_table.h"
 #include "studies/commands/description.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Reports expected properties of the particles in a PIV setup for each camera: image diameter, depth of field,
 /// particles per interrogation window, photons, electrons at the peak, and the smallest visible particle.
@@ -13,4 +13,4 @@ namespace gladstone {
 /// @throws DataError if it is not the setup of a PIV experiment
 Description describe_particles(SetupDocument const& setup, std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -17,7 +17,7 @@
 #include "studies/figures/layout_figure.h"
 #include "studies/report/layout_view.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Returns the figure's name for one of several cameras.
@@ -71,4 +71,4 @@ Description describe_setup(SetupDocument const& setup, std::string const& name, 
   return {json_text(json), text, std::move(rows)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

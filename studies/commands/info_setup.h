@@ -5,7 +5,7 @@
 #include "render/setup/setup_table.h"
 #include "studies/commands/description.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Reports what follows from a setup before it is rendered, for each camera (make_setup_overview()), and draws the
 /// layout.
@@ -14,4 +14,4 @@ namespace gladstone {
 /// @throws SetupError, DataError; OutputError if a figure cannot be written
 Description describe_setup(SetupDocument const& setup, std::string const& name, std::string const& figure);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -19,7 +19,7 @@
 #include "studies/commands/embedded_text.h"
 #include "studies/commands/setup_keys.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// A kind of file that `gladstone init` writes.
@@ -240,4 +240,4 @@ CommandBody attach_init(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

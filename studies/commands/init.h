@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Keys of a template: the most important ones with a value, or all of them, commented out, with their defaults.
 enum class TemplateKeys { important, all };
@@ -19,4 +19,4 @@ std::string template_text(std::string const& kind, TemplateKeys keys);
 /// @throws OutputError if the file exists or cannot be written; DataError for an unknown kind
 std::string write_template(std::string const& path, std::string const& kind, TemplateKeys keys);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

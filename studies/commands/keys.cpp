@@ -11,7 +11,7 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/command.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Returns true if a path contains the pattern, or matches it as a whole if it contains wildcards (*, ?, [...]).
@@ -117,4 +117,4 @@ CommandBody attach_keys(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -6,7 +6,7 @@
 
 #include "studies/commands/setup_keys.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Keys of setups and studies that match a pattern.
 struct FoundKeys {
@@ -24,4 +24,4 @@ FoundKeys find_keys(std::string const& pattern);
 /// Returns an array of objects: key, condition, unit, default, values, meaning, ...
 nlohmann::ordered_json keys_json(FoundKeys const& found);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

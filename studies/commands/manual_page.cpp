@@ -3,7 +3,7 @@
 #include "render/base/version.h"
 #include "studies/commands/command_description.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Escapes a text for roff: backslashes, hyphens, which are otherwise set as dashes, and requests at the start of a
@@ -101,4 +101,4 @@ gladstone report out/bos
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

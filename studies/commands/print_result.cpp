@@ -7,7 +7,7 @@
 #include "studies/commands/command.h"
 #include "studies/commands/run_warnings.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Appends the warnings of the run to the members "warnings" and "warning_records" of a JSON object.
@@ -41,4 +41,4 @@ void print_error(std::string const& text) {
   std::fputc('\n', stderr);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -4,7 +4,7 @@
 #include "studies/case/case_files.h"
 #include "studies/sweep/manifest.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 std::vector<ProtectedFiles> protected_files() {
   return {{"study",
@@ -20,4 +20,4 @@ std::vector<ProtectedFiles> protected_files() {
            {benchmark_truth, case_file::reference, case_file::flow, case_file::setup}}};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -4,9 +4,9 @@
 
 #include "render/files/input_guard.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Returns the files of studies, cases and benchmark cases that only the commands making them may write.
 std::vector<ProtectedFiles> protected_files();
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

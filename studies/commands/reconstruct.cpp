@@ -19,7 +19,7 @@
 #include "studies/figures/density_figure.h"
 #include "studies/figures/draw_or_warn.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Draws the figure, or warns if gnuplot is not installed.
@@ -76,4 +76,4 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

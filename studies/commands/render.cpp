@@ -19,7 +19,7 @@
 #include "studies/case/warning_log.h"
 #include "studies/commands/command.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 constexpr char const* example_setup =
@@ -189,4 +189,4 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

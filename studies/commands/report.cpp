@@ -11,7 +11,7 @@
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Rejects the name of a new file without the ending of a report. Whether an existing file may be replaced is checked
@@ -76,4 +76,4 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -9,7 +9,7 @@
 
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 class WarningSink final : public spdlog::sinks::base_sink<std::mutex> {
@@ -41,4 +41,4 @@ void record_warnings(spdlog::logger& log) { log.sinks().push_back(sink()); }
 
 Warnings recorded_warnings() { return sink()->warnings(); }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

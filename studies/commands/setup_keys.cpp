@@ -5,7 +5,7 @@
 #include "render/base/text.h"
 #include "studies/commands/embedded_text.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Removes the backticks and replaces the links of a text in Markdown by their words.
@@ -102,4 +102,4 @@ std::vector<SetupKeyTable> const& setup_key_tables() {
   return tables;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Description of one key of a setup or study, from the tables of docs/reference/setup.md.
 struct SetupKey {
@@ -37,4 +37,4 @@ std::vector<SetupKeyTable> parse_key_tables(std::string_view page);
 /// Returns the tables of docs/reference/setup.md, which the build embeds in the program.
 std::vector<SetupKeyTable> const& setup_key_tables();
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

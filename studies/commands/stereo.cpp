@@ -18,7 +18,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/stereo_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 /// Returns the files that a stereoscopic measurement may read.
@@ -118,4 +118,4 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -17,7 +17,7 @@
 #include "studies/sweep/ranking.h"
 #include "studies/sweep/state_report.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 char const* to_string(PlanOutcome planned) {
@@ -196,4 +196,4 @@ CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

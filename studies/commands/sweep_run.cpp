@@ -24,7 +24,7 @@
 #include "studies/sweep/state_report.h"
 #include "studies/sweep/workers.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 struct Arguments {
@@ -289,4 +289,4 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

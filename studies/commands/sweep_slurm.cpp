@@ -11,7 +11,7 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ std::optional<JobReport> run_on_cluster(std::string const& run, Manifest const& 
   return JobReport{end.job, words_of_failed_tasks(array, end.job, due, remaining)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -9,7 +9,7 @@
 #include "studies/sweep/run.h"
 #include "studies/sweep/slurm.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Arguments of `sweep run` for a Slurm cluster.
 struct SlurmArguments {
@@ -35,4 +35,4 @@ std::optional<JobReport> run_on_cluster(std::string const& run, Manifest const& 
                                         std::vector<std::size_t> const& selected, RunSelection const& selection,
                                         SlurmArguments const& arguments, GlobalOptions const& options);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

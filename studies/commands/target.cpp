@@ -17,7 +17,7 @@
 #include "studies/case/target_pattern.h"
 #include "studies/commands/command.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 constexpr Vec2d a3_mm{297, 420};  ///< shorter and longer side of the paper
@@ -77,4 +77,4 @@ CommandBody attach_target(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

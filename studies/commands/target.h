@@ -5,7 +5,7 @@
 #include "render/setup/setup_table.h"
 #include "studies/commands/description.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 /// Writes the dot pattern of a setup for printing.
 /// @param name    name of the setup in messages
@@ -13,4 +13,4 @@ namespace gladstone {
 /// @throws SetupError; DataError for a setup without dots; OutputError
 Description write_target(SetupDocument const& setup, std::string const& name, std::string const& output);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -24,7 +24,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/tomography_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ CommandBody attach_tomography(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

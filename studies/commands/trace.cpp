@@ -14,7 +14,7 @@
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
@@ -66,4 +66,4 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -11,7 +11,7 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/command.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 namespace {
 
 nlohmann::json to_json(std::vector<OracleResult> const& results, std::size_t missed) {
@@ -56,4 +56,4 @@ CommandBody attach_validate(CLI::App&, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

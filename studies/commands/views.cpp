@@ -8,7 +8,7 @@
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 CommandBody attach_views(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
@@ -41,4 +41,4 @@ CommandBody attach_views(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline commands {
 
 VolumeSupport parse_support(std::string const& text) {
   std::size_t const colon = text.find(':');
@@ -25,4 +25,4 @@ VolumeSupport parse_support(std::string const& text) {
       "--support", fmt::format("expected sphere:MM or cylinder:MM with a positive radius, got \"{}\"", text)}});
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline commands

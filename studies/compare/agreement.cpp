@@ -9,7 +9,7 @@
 #include "render/planning.h"
 #include "render/render.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 constexpr int pieces_across = 4;  // side length of the plane in jackknife pieces
@@ -111,4 +111,4 @@ PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Rend
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -6,7 +6,7 @@
 #include "render/scene/renderer.h"
 #include "studies/compare/cone_theory.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Sums over dots from which an Agreement is computed.
 struct AgreementSums {
@@ -49,4 +49,4 @@ Image<double> field_plane(FieldSetup const& field);
 /// @pre the number of views along an axis is an integer and divides 96
 PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Renderer& renderer);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

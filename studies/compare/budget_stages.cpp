@@ -5,7 +5,7 @@
 
 #include "studies/compare/comparison_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 std::vector<BudgetStage> budget_stages(Comparison const& comparison, WindowTruth const& window) {
   std::vector<BudgetStage> stages{{"window", window.displacement_px},
@@ -42,4 +42,4 @@ std::vector<BudgetStage> budget_differences(Comparison const& comparison) {
   return differences;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

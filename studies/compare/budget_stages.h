@@ -4,7 +4,7 @@
 
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Collects the available displacements of a comparison's chain as input of error_budget().
 /// @param window  stage `window`: comparison.window or comparison.recorded()
@@ -15,4 +15,4 @@ std::vector<BudgetStage> budget_stages(Comparison const& comparison, WindowTruth
 /// across the gap is assigned to the first term of the gap, as in the budget.
 std::vector<BudgetStage> budget_differences(Comparison const& comparison);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -17,7 +17,7 @@
 #include "studies/case/case_kind.h"
 #include "studies/compare/calibration_fit.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 constexpr std::size_t least_dots = 12;  // minimum number of dots on a plane
@@ -262,4 +262,4 @@ Calibration calibrate_images(std::string const& setup, std::vector<std::string> 
   return calibrate(loaded, setup, pictures, setup);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

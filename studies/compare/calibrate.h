@@ -12,7 +12,7 @@
 #include "render/base/warning.h"
 #include "render/files/source_files.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Results of detecting the dots of one calibration plane.
 struct CalibratedPlane {
@@ -68,4 +68,4 @@ nlohmann::ordered_json calibration_json(Calibration const& calibration);
 /// Formats the calibration as a table of parameters, standard errors and residuals.
 std::string calibration_table(Calibration const& calibration);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

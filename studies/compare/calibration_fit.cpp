@@ -10,7 +10,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 // lower bound of the dots' scatter within a plane, used as reference for residuals
@@ -333,4 +333,4 @@ void fit_calibration(Calibration& calibration, PlateDots dots, ExpectedCamera co
   CalibrationFit(calibration, std::move(dots), expected, name).run();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -3,7 +3,7 @@
 #include "analysis/calibration/plate_placement.h"
 #include "studies/compare/calibrate.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Expected properties of the calibrated camera, as far as the setup determines them.
 struct ExpectedCamera {
@@ -26,4 +26,4 @@ struct ExpectedCamera {
 /// @throws DataError if the dots do not determine a camera
 void fit_calibration(Calibration& calibration, PlateDots dots, ExpectedCamera const& expected, std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -13,7 +13,7 @@
 #include "studies/compare/calibrate.h"
 #include "studies/drawing/draw_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 double largest(std::vector<Vec2d> const& residuals) {
@@ -72,18 +72,17 @@ void write_soloff(Hdf5Writer& file, SoloffFit const& fit, Hdf5Axes& axes) {
 
 /// Returns the residuals of one model as arrows.
 /// @param enlarged  magnification of the arrows [1]
-figures::Panel make_residual_panel(Calibration const& calibration, std::vector<Vec2d> const& residuals,
-                                   double enlarged) {
-  figures::Panel panel{.grid = figures::Grid::both, .equal_scales = true};
+plot::Panel make_residual_panel(Calibration const& calibration, std::vector<Vec2d> const& residuals, double enlarged) {
+  plot::Panel panel{.grid = plot::Grid::both, .equal_scales = true};
   panel.x = {"column [px]", 0, static_cast<double>(calibration.columns)};
   panel.y = {"row [px]", static_cast<double>(calibration.rows), 0};
-  panel.legend = {figures::LegendPlace::below, 0, true};
+  panel.legend = {plot::LegendPlace::below, 0, true};
   for (std::size_t plane = 0; plane < calibration.planes.size(); ++plane) {
-    figures::Layer arrows{figures::Layer::Kind::arrows,
-                          {{}, {}, {}, {}},
-                          house_colour(plane),
-                          fmt::format("Z = {:.4g} mm", calibration.planes[plane].z / unit::millimetre),
-                          1.2};
+    plot::Layer arrows{plot::Layer::Kind::arrows,
+                       {{}, {}, {}, {}},
+                       house_colour(plane),
+                       fmt::format("Z = {:.4g} mm", calibration.planes[plane].z / unit::millimetre),
+                       1.2};
     for (std::size_t k = 0; k < residuals.size(); ++k) {
       if (calibration.plane_of[k] != plane) continue;
       Vec2d const at = calibration.points.pixel[k];
@@ -173,7 +172,7 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
 void draw_calibration(std::string const& path, Calibration const& calibration) {
   constexpr double longest_share = 0.06;  // length of the longest arrow, relative to the width of the image
   Figure figure{1180, 620};
-  auto const add = [&](std::vector<Vec2d> const& residuals, char const* model, double rms, figures::Box const& box) {
+  auto const add = [&](std::vector<Vec2d> const& residuals, char const* model, double rms, plot::Box const& box) {
     double const most = largest(residuals);
     double const enlarged =
         most > 0 ? std::pow(10, std::floor(std::log10(longest_share * calibration.columns / most))) : 1;
@@ -239,4 +238,4 @@ std::string calibration_table(Calibration const& calibration) {
                     largest(calibration.soloff.residual_px));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

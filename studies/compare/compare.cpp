@@ -26,7 +26,7 @@
 #include "studies/compare/thinned_vectors.h"
 #include "studies/compare/tracked_dots.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Returns the weight of each dot in the correlation: the geometric mean of its light in both frames. The weight of a
@@ -210,4 +210,4 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
   return comparison;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

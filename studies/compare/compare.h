@@ -17,7 +17,7 @@
 #include "studies/case/case.h"
 #include "studies/compare/compared_files.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Options of a comparison.
 struct CompareOptions {
@@ -127,4 +127,4 @@ nlohmann::ordered_json compute_error_measures(Comparison const& comparison);
 /// Returns compute_error_measures() as the text of errors.json.
 std::string errors_json(Comparison const& comparison);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

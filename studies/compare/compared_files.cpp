@@ -10,7 +10,7 @@
 #include "render/files/input_file.h"
 #include "studies/case/log_silencer.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Returns the path of a file that the case must contain.
@@ -108,4 +108,4 @@ PreparedCase prepare_stored_case(std::string const& folder) {
   return prepare_case(loaded, known);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

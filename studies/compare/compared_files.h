@@ -5,7 +5,7 @@
 #include "render/files/source_files.h"
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Setup, truth and vectors that a comparison reads, with their hashes at the time of reading.
 struct ComparedFiles {
@@ -27,4 +27,4 @@ void require_unchanged_inputs(std::string const& folder);
 /// changed
 PreparedCase prepare_stored_case(std::string const& folder);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

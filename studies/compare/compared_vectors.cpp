@@ -14,7 +14,7 @@
 #include "studies/case/correlation_setup.h"
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Ray truth of the dots interpolated on a regular lattice, for fast evaluation anywhere in the view.
@@ -187,4 +187,4 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   return vectors;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

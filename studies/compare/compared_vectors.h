@@ -4,7 +4,7 @@
 
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Logs the warnings and notes of a file of vectors.
 void log_remarks(VectorFile const& file);
@@ -30,4 +30,4 @@ enum class ConventionCheck {
 MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSetup const& loaded,
                                GroundTruth const* truth, CompareOptions const& options, ConventionCheck check);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

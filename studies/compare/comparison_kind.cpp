@@ -1,6 +1,6 @@
 #include "studies/compare/comparison_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 ComparisonKind const& comparison_kind(Setup const& setup) {
   for (ComparisonKind const* one : all_comparison_kinds)
@@ -14,4 +14,4 @@ ComparisonKind const& comparison_kind(Comparison const& comparison) {
   return *all_comparison_kinds.front();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

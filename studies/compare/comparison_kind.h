@@ -6,7 +6,7 @@
 #include "render/scene/experiment.h"
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Reference displacement, in addition to the ray truth, with which vectors are compared.
 struct ReferenceDisplacement {
@@ -51,4 +51,4 @@ inline constexpr std::array all_comparison_kinds{&bos_comparison, &piv_compariso
 ComparisonKind const& comparison_kind(Setup const& setup);
 ComparisonKind const& comparison_kind(Comparison const& comparison);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

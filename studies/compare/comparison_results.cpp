@@ -7,7 +7,7 @@
 #include "studies/compare/compare.h"
 #include "studies/compare/comparison_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 nlohmann::json term_json(BudgetTerm const& term) {
@@ -152,4 +152,4 @@ nlohmann::ordered_json compute_error_measures(Comparison const& comparison) {
 
 std::string errors_json(Comparison const& comparison) { return json_text(compute_error_measures(comparison)) + "\n"; }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -6,7 +6,7 @@
 #include "studies/case/peak_locking.h"
 #include "studies/compare/comparison_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Returns a warning if the true displacements are too small to be measured; nullopt if not, or if all are zero.
@@ -34,4 +34,4 @@ Warnings comparison_warnings(Comparison const& comparison, Setup const& setup) {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -6,7 +6,7 @@
 #include "render/base/warning.h"
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Rms true displacement per component below which correlation cannot be expected to measure a signal [px].
 inline constexpr double least_signal_px = 0.01;
@@ -15,4 +15,4 @@ inline constexpr double least_signal_px = 0.01;
 /// below least_signal_px or below the vectors' error.
 Warnings comparison_warnings(Comparison const& comparison, Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -10,7 +10,7 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Returns the mean square of a wave averaged along chief rays through stacked planes, over the view and all wave
@@ -62,7 +62,8 @@ std::complex<double> fourier_sum(Value const* values, int count, int mode,
 }  // namespace
 
 double cone_transfer(Setup const& setup, double wavelength) {
-  return cone_transfer(setup.imaging().entrance_pupil, setup.z_b(), setup.z_d, setup.medium.thickness, wavelength);
+  return density::cone_transfer(setup.imaging().entrance_pupil, setup.z_b(), setup.z_d, setup.medium.thickness,
+                                wavelength);
 }
 
 double cone_width(Setup const& setup) { return setup.imaging().entrance_pupil * setup.z_d / setup.z_b(); }
@@ -131,4 +132,4 @@ Agreement predicted_agreement(GradientSpectrum const& spectrum, double spacing, 
   return {both / std::sqrt(eq9 * rays), std::sqrt(rays / eq9)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

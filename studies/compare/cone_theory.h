@@ -5,7 +5,7 @@
 #include "render/base/image.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Returns the aperture-averaged displacement amplitude relative to the small-angle theory (Eq. 9), for a density wave
 /// transverse to the axis: the mean of 2 J1(x) / x over the thickness, with x = pi D_c(s) / wavelength, weighted by the
@@ -50,4 +50,4 @@ struct Agreement {
 /// @param spacing  distance between the plane's nodes [m]
 Agreement predicted_agreement(GradientSpectrum const& spectrum, double spacing, Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -27,7 +27,7 @@
 #include "studies/case/warning_log.h"
 #include "studies/compare/tracked_dots.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides, PreparedSet set) {
@@ -312,4 +312,4 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
   return measurement;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -11,7 +11,7 @@
 #include "studies/case/backend.h"
 #include "studies/case/correlation_setup.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Result of correlating one or several image pairs.
 struct Measurement {
@@ -74,4 +74,4 @@ void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sourc
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
                            Backend const& device);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

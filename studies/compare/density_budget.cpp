@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "studies/compare/budget_stages.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Statistics of a density difference over the nodes where it and the truth are finite.
@@ -66,4 +66,4 @@ std::vector<DensityTerm> compute_density_budget(Comparison const& comparison, Re
   return terms;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

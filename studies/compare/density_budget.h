@@ -5,7 +5,7 @@
 #include "studies/compare/compare.h"
 #include "studies/compare/reconstruct.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Splits the error of a reconstructed density into its causes. Reconstruction is linear in the displacement: the terms
 /// of the displacement's budget (see error_budget()), reconstructed with the same reference, weights and axis, and the
@@ -20,4 +20,4 @@ std::vector<DensityTerm> compute_density_budget(Comparison const& comparison, Re
                                                 Setup const& setup, double window_px,
                                                 ReconstructOptions const& options);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -14,7 +14,7 @@
 #include "studies/case/json_text.h"
 #include "studies/compare/density_table.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 std::vector<double> select_finite(std::vector<double> const& values) {
@@ -158,4 +158,4 @@ std::string reconstruction_report(Reconstruction const& reconstruction) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -5,7 +5,7 @@
 
 #include "studies/compare/reconstruct.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Writes density.h5 (filetype "gladstone density"): /x_mm [nx], /y_mm [ny], fields [ny, nx] of density, uncertainty,
 /// region and reference, /gradient_kg_m4 [ny, nx, 2], and for a rendered case truth and error; rows upwards. Tables in
@@ -20,4 +20,4 @@ nlohmann::ordered_json summarize_reconstruction(Reconstruction const& reconstruc
 /// Formats the summary as text.
 std::string reconstruction_report(Reconstruction const& reconstruction);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -10,14 +10,14 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 constexpr char const* gradient_dataset = "/gradient_kg_m4";
 
 void add_column(GridTable& table, char const* name, char const* units, char const* description,
                 std::vector<double> values) {
-  table.columns.push_back(detail::number_column(name, units, description, std::move(values)));
+  table.columns.push_back(number_column(name, units, description, std::move(values)));
 }
 
 void add_codes(GridTable& table, char const* name, char const* description, std::vector<std::int64_t> const& codes) {
@@ -104,7 +104,7 @@ void write_grid_datasets(Hdf5Writer& file, Hdf5Axes& axes, GridTable const& tabl
     file.write(scales.back(), std::span<double const>(axis.place_mm), {axis.place_mm.size()}, "mm", axis.description,
                axis.name);
   }
-  for (detail::VectorColumn const& column : table.columns) {
+  for (VectorColumn const& column : table.columns) {
     std::string const name = '/' + column.name;
     if (column.is_code) {
       std::vector<std::int64_t> const codes(column.values.begin(), column.values.end());
@@ -165,4 +165,4 @@ ExportedDensity load_density_for_export(std::string const& path) {
   return exported;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -7,7 +7,7 @@
 #include "studies/compare/reconstruct.h"
 #include "studies/compare/tomography.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Returns density, uncertainty, region and reference at the nodes of a plane, and for a rendered case truth and error.
 GridTable make_density_table(Reconstruction const& reconstruction);
@@ -43,4 +43,4 @@ struct ExportedDensity {
 /// Reads a density file for a file in another format. @throws DataError if it cannot be read
 ExportedDensity load_density_for_export(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

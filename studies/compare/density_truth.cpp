@@ -7,7 +7,7 @@
 
 #include "render/medium/field_volume.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Nodes and weights of the interpolation along one axis.
@@ -70,4 +70,4 @@ std::vector<double> sample_middle_plane(MediumSetup const& setup, density::Plane
   return density;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -7,7 +7,7 @@
 #include "render/scene/field_map.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Interpolates the path-averaged density of a field map by cubics (Lagrange; linear in the outermost cells).
 /// @param position_px  within the image, columns right and rows down [px]
@@ -20,4 +20,4 @@ std::vector<double> interpolate_density(FieldMap const& map, std::vector<Vec2d> 
 /// @return      [kg/m^3, grid.size()]
 std::vector<double> sample_middle_plane(MediumSetup const& setup, density::PlaneGrid const& grid);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

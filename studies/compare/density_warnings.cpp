@@ -7,7 +7,7 @@
 
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 void warn_of_regions(Reconstruction& result, std::vector<density::Region> const& regions) {
   std::size_t without = 0, nodes = 0;
@@ -125,4 +125,4 @@ void warn_of_displacement_gradient(Reconstruction& result, density::GradientMap 
                    gradient, 100.0 * least_error * gradient, std::min(100.0, 100.0 * largest_error * gradient))});
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -6,7 +6,7 @@
 #include "analysis/density/regions.h"
 #include "studies/compare/reconstruct.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Warns of regions whose density is undetermined because they contain no reference node.
 void warn_of_regions(Reconstruction& result, std::vector<density::Region> const& regions);
@@ -41,4 +41,4 @@ double compute_displacement_gradient(density::GradientMap const& projected, dens
 void warn_of_displacement_gradient(Reconstruction& result, density::GradientMap const& projected,
                                    density::ProjectionOptics const& optics);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

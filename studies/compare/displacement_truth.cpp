@@ -7,7 +7,7 @@
 #include "studies/compare/comparison_kind.h"
 #include "studies/compare/map_refinement.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Twice the largest distance between pixels from which the displacement may be interpolated [px].
@@ -42,4 +42,4 @@ Image<Vec2d> displacement_truth(Scene const& scene, RenderPlan const& plan, Rend
   return refine_map(columns, rows, all ? 1 : first_spacing(spacing_px), sample);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

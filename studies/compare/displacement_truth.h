@@ -4,7 +4,7 @@
 #include "render/base/image.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Pixels to which rays are traced.
 enum class TracedPixels {
@@ -29,4 +29,4 @@ enum class TracedPixels {
 Image<Vec2d> displacement_truth(Scene const& scene, RenderPlan const& plan, Renderer& renderer, TruthAt at,
                                 int spacing_px, TracedPixels traced = TracedPixels::adaptive);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

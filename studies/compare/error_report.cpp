@@ -8,7 +8,7 @@
 #include "analysis/errors/uncertainty_quality.h"
 #include "studies/compare/comparison_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Formats the coverage of the errors by the vectors' uncertainties; empty without uncertainties.
@@ -93,4 +93,4 @@ std::string error_report(Comparison const& comparison) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -4,9 +4,9 @@
 
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Formats the error measures and the error budget as text tables.
 std::string error_report(Comparison const& comparison);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

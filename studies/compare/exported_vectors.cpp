@@ -9,7 +9,7 @@
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/displacement_truth.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Adds the attributes that vectors.h5 and truth.h5 have in common: settings, device, and hashes of the frames.
@@ -111,4 +111,4 @@ ExportedVectors load_for_export(std::string const& path, std::string const& conv
   return vectors;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -8,7 +8,7 @@
 #include "render/scene/renderer.h"
 #include "studies/compare/displacement_truth.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Vectors of a file in our conventions, with the provenance that a converted file stores.
 struct ExportedVectors {
@@ -46,4 +46,4 @@ struct ExportedComponents {
 /// Reads three components for a file in another format. @throws DataError if the file cannot be read
 ExportedComponents load_components_for_export(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

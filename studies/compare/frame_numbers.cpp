@@ -5,7 +5,7 @@
 #include <charconv>
 #include <filesystem>
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -72,4 +72,4 @@ FrameIntervals::FrameIntervals(std::vector<std::string> const& files)
   if (2 * equal >= intervals.size()) usual_ = least;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

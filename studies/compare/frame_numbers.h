@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// File name divided into its numbers and the text around them: "A_{}_{}" and {"12", "3"}, without leading zeros.
 struct NumberedName {
@@ -37,4 +37,4 @@ class FrameIntervals {
   long long usual_ = 0;  ///< smallest interval; 0: unknown
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

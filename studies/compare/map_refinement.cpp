@@ -7,7 +7,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 bool is_known(Vec2d value) { return std::isfinite(value.x) && std::isfinite(value.y); }
@@ -128,4 +128,4 @@ Image<Vec2d> refine_map(int columns, int rows, int coarsest, MapSampler const& s
   return map;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -6,7 +6,7 @@
 #include "render/base/image.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Values at nodes of a map, and their standard errors.
 struct MapSamples {
@@ -36,4 +36,4 @@ inline constexpr double refinement_tolerance = 5e-4;
 /// @return the map; NaN where the sampler returns NaN
 Image<Vec2d> refine_map(int columns, int rows, int coarsest, MapSampler const& sample);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

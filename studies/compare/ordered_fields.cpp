@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 bool OrderedFields::wait_for(std::size_t k) {
   std::unique_lock lock(mutex_);
@@ -30,4 +30,4 @@ void OrderedFields::throw_if_stopped() const {
   if (reason_) std::rethrow_exception(reason_);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -9,7 +9,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Receives fields that several threads compute in any order, and passes them on in ascending order. The number of
 /// fields that wait for an earlier one is limited, so that the memory is bounded.
@@ -39,4 +39,4 @@ class OrderedFields {
   std::exception_ptr reason_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -21,7 +21,7 @@
 #include "studies/case/peak_locking.h"
 #include "studies/compare/sequence_folder.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Correlator that several owners share.
@@ -199,4 +199,4 @@ std::optional<PairVectors> PairCorrelation::read_finished(std::string const& pat
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

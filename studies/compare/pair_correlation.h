@@ -14,7 +14,7 @@
 #include "studies/compare/sequence.h"
 #include "studies/compare/sequence_images.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Frames next to a pair of consecutive frames, for particle tracks; null: none.
 struct PairNeighbours {
@@ -86,4 +86,4 @@ class PairCorrelation {
   Backend device_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -8,7 +8,7 @@
 #include "render/base/parallel.h"
 #include "render/light/flow_path.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 constexpr std::uint64_t rough_rays = 128;
@@ -159,4 +159,4 @@ GroundTruth particle_displacements(Scene const& scene, RenderPlan const& plan, R
   return truth;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

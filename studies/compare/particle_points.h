@@ -5,7 +5,7 @@
 #include "analysis/errors/window_truth.h"
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// PIV truth at points of the image, from virtual particles in the middle of the laser sheet.
 struct ParticlePoints {
@@ -34,4 +34,4 @@ bool has_projected_displacements(Scene const& scene);
 GroundTruth particle_displacements(Scene const& scene, RenderPlan const& plan, Renderer& renderer,
                                    std::vector<Vec2d> const& places_px, TruthAt at);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -15,7 +15,7 @@
 #include "studies/compare/density_warnings.h"
 #include "studies/compare/reconstruct_axisymmetric.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 void check_reconstruct_options(ReconstructOptions const& options) {
@@ -238,4 +238,4 @@ DensityErrors compute_density_errors(Reconstruction const& reconstruction) {
   return errors;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

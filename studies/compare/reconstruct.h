@@ -13,7 +13,7 @@
 #include "render/scene/setup.h"
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Region of known density in the mid-plane of the medium: the vectors along one side of the image, or within a box.
 struct ReferenceRegion {
@@ -129,4 +129,4 @@ struct KnownMeasurement {
 Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device,
                                 KnownMeasurement known = {});
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

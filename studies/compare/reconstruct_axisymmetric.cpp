@@ -7,7 +7,7 @@
 
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Threshold of AxisymmetryResult::border_gradient above which a warning is issued.
@@ -101,4 +101,4 @@ Reconstruction invert_flow(Reconstruction result, density::GradientMap const& pr
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

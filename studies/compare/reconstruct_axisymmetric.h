@@ -4,7 +4,7 @@
 
 #include "studies/compare/reconstruct.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Inverts the projected gradient of an axisymmetric flow, and mirrors the radial density about the axis into the axes
 /// of the image. Sets grid, density, sigma_random, gradient, region, reference and axisymmetry; adds a warning if the
@@ -17,4 +17,4 @@ namespace gladstone {
 Reconstruction invert_flow(Reconstruction result, density::GradientMap const& projected,
                            std::array<double, 2> axis_range, ReconstructOptions const& options);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -19,7 +19,7 @@
 #include "studies/compare/density_truth.h"
 #include "studies/compare/reconstruct.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,4 +133,4 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

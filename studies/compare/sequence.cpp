@@ -27,7 +27,7 @@
 #include "studies/compare/sequence_folder.h"
 #include "studies/compare/sequence_images.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Pairs per thread whose vectors may wait for those of an earlier pair, before they are added to the statistics.
@@ -271,4 +271,4 @@ SequenceResult correlate_sequence(std::vector<SequencePair> const& pairs, Sequen
   return SequenceRun(pairs, settings, show_progress).run(folder, std::move(device));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

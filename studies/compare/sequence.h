@@ -10,7 +10,7 @@
 #include "studies/compare/correlate.h"
 #include "studies/compare/sequence_frames.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// File names in the output folder of a sequence, besides the vectors of each pair.
 namespace sequence_file {
@@ -85,4 +85,4 @@ SequenceResult correlate_sequence(std::vector<SequencePair> const& pairs, Sequen
 /// @throws DataError if no pair has a valid vector
 void report_sequence(SequenceResult const& result, std::string const& folder);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -18,7 +18,7 @@
 #include "studies/case/warning_json.h"
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,4 +144,4 @@ void write_sequence_state(std::string const& path, SequenceState const& state, s
   OutputFile::write_text(path, json_text(json) + '\n');
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -5,7 +5,7 @@
 
 #include "studies/compare/sequence.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Output folder of a sequence, locked while this object exists so that two runs never write to it at once.
 class SequenceFolder {
@@ -44,4 +44,4 @@ struct SequenceState {
 /// Writes sequence.json. @throws OutputError
 void write_sequence_state(std::string const& path, SequenceState const& state, std::vector<PairRecord> const& pairs);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

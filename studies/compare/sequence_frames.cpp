@@ -13,7 +13,7 @@
 #include "render/base/text.h"
 #include "studies/compare/frame_numbers.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -270,4 +270,4 @@ std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const
   return pairs;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

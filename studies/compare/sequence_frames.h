@@ -8,7 +8,7 @@
 #include "render/files/file_pattern.h"
 #include "render/files/image_pages.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Selection of the pairs of a sequence.
 enum class Pairing {
@@ -54,4 +54,4 @@ std::vector<std::vector<std::string>> list_sequence_files(std::vector<std::strin
 /// @throws DataError if there are fewer than two images or a file has too many pages, or two lists cannot be matched
 std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const& lists, Pairing pairing);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -12,7 +12,7 @@
 #include "render/files/source_files.h"
 #include "studies/case/pair_progress.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 Image<double> compute_background_image(std::string const& statistic, std::vector<SequenceFrame> const& frames,
@@ -116,4 +116,4 @@ void compute_background_images(SequenceBackground& background, std::vector<Seque
                     "no frame is suitable for the background; check that they are readable");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

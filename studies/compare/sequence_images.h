@@ -8,7 +8,7 @@
 #include "render/base/warning.h"
 #include "studies/compare/sequence_frames.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Frame of a sequence, read from its file.
 struct SequenceImage {
@@ -42,4 +42,4 @@ SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs);
 void compute_background_images(SequenceBackground& background, std::vector<SequencePair> const& pairs, Pairing pairing,
                                SequenceSize const& size, bool show_progress);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -4,7 +4,7 @@
 #include "studies/case/warning_log.h"
 #include "studies/compare/sequence.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 void report_sequence(SequenceResult const& result, std::string const& folder) {
   constexpr std::size_t most_named = 20;
@@ -22,4 +22,4 @@ void report_sequence(SequenceResult const& result, std::string const& folder) {
   log_warnings(result.warnings);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

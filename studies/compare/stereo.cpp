@@ -27,7 +27,7 @@
 #include "studies/compare/stereo_truth.h"
 #include "studies/compare/stereo_warnings.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -245,4 +245,4 @@ StereoMeasurement measure_stereo(StereoOptions options, Backend const& device) {
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

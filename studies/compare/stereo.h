@@ -12,7 +12,7 @@
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Options of a stereoscopic measurement.
 struct StereoOptions {
@@ -82,4 +82,4 @@ std::array<std::string, 2> find_stereo_inputs(std::array<std::string, 2> const& 
 /// @throws DataError   for files that are missing or do not fit together
 StereoMeasurement measure_stereo(StereoOptions options, Backend const& device);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -9,7 +9,7 @@
 #include "render/base/units.h"
 #include "render/files/image_file.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Settings for disparities: large windows, since the images of a thick sheet agree only on average.
@@ -76,4 +76,4 @@ std::optional<stereo::SheetAlignment> measure_disparity(std::vector<std::string>
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -8,7 +8,7 @@
 #include "analysis/stereo/sheet_alignment.h"
 #include "render/files/source_files.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Determines the laser sheet from images of both cameras, see stereo::align_sheet().
 /// @param images   image files of the first and of the second camera in turn, two for each time
@@ -27,4 +27,4 @@ std::optional<stereo::SheetAlignment> measure_disparity(std::vector<std::string>
                                                         std::array<PinholeCamera const*, 2> const& cameras,
                                                         stereo::ObjectPlane const& plane, SourceFiles& sources);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

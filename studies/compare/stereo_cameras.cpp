@@ -12,7 +12,7 @@
 #include "render/scene/calibration_planes.h"
 #include "studies/case/warning_log.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Reads a dataset of a calibration. @throws DataError if it does not exist or has another size
@@ -88,4 +88,4 @@ stereo::CalibratedCamera find_exact_camera(Setup const& setup, std::string const
           {}};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -5,7 +5,7 @@
 #include "analysis/stereo/stereo_camera.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Reads the pinhole camera of a calibration.h5 with its covariance. Warns if the polynomial fits the dots much better,
 /// as it does for cameras that look through windows.
@@ -17,4 +17,4 @@ stereo::CalibratedCamera read_calibrated_camera(std::string const& path);
 /// @throws DataError if the setup's camera is not a pinhole camera (see equivalent_pinhole())
 stereo::CalibratedCamera find_exact_camera(Setup const& setup, std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -18,7 +18,7 @@
 #include "studies/case/result_rows.h"
 #include "studies/compare/stereo_scores.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 using StereoNode = std::optional<stereo::StereoVector>;
@@ -288,4 +288,4 @@ std::string stereo_report(StereoMeasurement const& measurement) {
                     measurement.pixel_size / unit::mm);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

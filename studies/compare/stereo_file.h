@@ -5,7 +5,7 @@
 
 #include "studies/compare/stereo.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Writes a file of three components (filetype "gladstone stereo"): /x_mm [nx], /y_mm [ny], /displacement_mm
 /// [ny, nx, 3] with its uncertainty, the residuals, and for rendered cases truth and error; rows upwards, NaN where not
@@ -19,4 +19,4 @@ nlohmann::ordered_json summarize_stereo(StereoMeasurement const& measurement);
 /// Formats the summary as text.
 std::string stereo_report(StereoMeasurement const& measurement);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -18,7 +18,7 @@
 #include "studies/compare/compared_files.h"
 #include "studies/compare/stereo_cameras.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
   return input;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

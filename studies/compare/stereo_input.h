@@ -11,7 +11,7 @@
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/stereo.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Vectors, camera and truth of one input.
 struct StereoInput {
@@ -29,4 +29,4 @@ struct StereoInput {
 /// @throws DataError for files that are missing or do not fit together
 StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, SourceFiles& sources);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -15,7 +15,7 @@
 #include "render/files/hdf5_file.h"
 #include "studies/case/json_text.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 constexpr std::array<char const*, 3> scored_components{"u", "v", "w"};
@@ -112,4 +112,4 @@ std::string scores_report(StereoScores const& scores) {
                     scores.pixel_size / unit::mm);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -9,7 +9,7 @@
 #include "studies/case/result_rows.h"
 #include "studies/compare/stereo.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Computes the errors of u, v and w over the valid nodes with a finite error.
 /// @param error, sigma  displacement minus truth, and standard uncertainty [m]
@@ -40,4 +40,4 @@ nlohmann::ordered_json summarize_scores(StereoScores const& scores);
 /// Formats scores as text.
 std::string scores_report(StereoScores const& scores);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -6,7 +6,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/errors/window_truth.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 Vec2d find_plane_scale(std::array<PinholeCamera const*, 2> const& cameras, stereo::ObjectPlane const& plane) {
   constexpr double step = 1e-4;  // step of the finite differences [m]
@@ -45,4 +45,4 @@ std::vector<Vec3d> compute_stereo_truth(std::array<GroundTruth const*, 2> const&
   return truth;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -7,7 +7,7 @@
 #include "analysis/stereo/reconstruct.h"
 #include "render/scene/ground_truth.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Computes the number of pixels per metre along x and y of a plane, mean of the cameras [px/m].
 Vec2d find_plane_scale(std::array<PinholeCamera const*, 2> const& cameras, stereo::ObjectPlane const& plane);
@@ -20,4 +20,4 @@ Vec2d find_plane_scale(std::array<PinholeCamera const*, 2> const& cameras, stere
 std::vector<Vec3d> compute_stereo_truth(std::array<GroundTruth const*, 2> const& dots, Vec2d scale,
                                         stereo::NodeGrid const& grid, CorrelationSettings const& settings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -8,7 +8,7 @@
 #include "analysis/stereo/residual_validation.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Each function returns nullopt if there is nothing to report.
@@ -91,4 +91,4 @@ Warnings find_stereo_warnings(StereoMeasurement const& measurement) {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

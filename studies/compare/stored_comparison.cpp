@@ -11,7 +11,7 @@
 #include "studies/case/flat_values.h"
 #include "studies/case/version_text.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Stage of the chain stored as a dataset [N, 2].
@@ -119,4 +119,4 @@ bool read_chain(std::string const& folder, std::string const& fingerprint, Compa
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -4,7 +4,7 @@
 
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Returns a text that identifies the inputs of a comparison: build, options, and the hashes of its files in order.
 std::string comparison_fingerprint(SourceFiles const& sources, CompareOptions const& options);
@@ -18,4 +18,4 @@ void write_chain(std::string const& path, Comparison const& comparison, std::str
 ///   files, with other options or by another build, or if errors.json does not match the SHA-256 in comparison.h5
 bool read_chain(std::string const& folder, std::string const& fingerprint, Comparison& comparison);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -6,7 +6,7 @@
 #include "analysis/vectors/vector_file.h"
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 /// Returns the indices of every n-th of `count` rows or columns, centred.
@@ -38,4 +38,4 @@ DisplacementField every_nth(DisplacementField field, int n) {
   return field;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -2,7 +2,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Returns the smallest step n such that every n-th vector of a lattice is at least `least_apart_px` from the next; 1
 /// for vectors without a lattice.
@@ -12,4 +12,4 @@ int lattice_step(DisplacementField const& field, int least_apart_px);
 /// unchanged.
 DisplacementField every_nth(DisplacementField field, int n);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

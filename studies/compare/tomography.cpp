@@ -13,7 +13,7 @@
 #include "studies/case/warning_log.h"
 #include "studies/compare/tomography_view.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 constexpr std::size_t most_views = 16;
@@ -285,4 +285,4 @@ Tomography reconstruct_views(TomographyOptions const& options, tomography::SartV
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -12,7 +12,7 @@
 #include "render/files/source_files.h"
 #include "studies/compare/reconstruct.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Part of a volume outside of which the density is the reference density: a sphere about the origin of the volume, or
 /// a cylinder about its Y axis.
@@ -78,4 +78,4 @@ Pose<double> turned_volume(double angle);
 /// @throws SetupError, DataError  for options, setups and vectors that do not determine a volume; DeviceError
 Tomography reconstruct_views(TomographyOptions const& options, tomography::SartVolumeMaker const& make_volume);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

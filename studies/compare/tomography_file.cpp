@@ -11,7 +11,7 @@
 #include "studies/case/json_text.h"
 #include "studies/compare/density_table.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 constexpr char const* volume_axes = "z, y, x (ascending)";
@@ -42,7 +42,7 @@ void write_density_volume(std::string const& path, RegularGrid const& grid, std:
   Hdf5Writer file(path, {"gladstone volume", 1, setup});
   Hdf5Axes axes(file);
   GridTable table{make_volume_axes(grid), {}};
-  table.columns.push_back(detail::number_column("density_kg_m3", "kg/m^3", "density", density));
+  table.columns.push_back(number_column("density_kg_m3", "kg/m^3", "density", density));
   write_grid_datasets(file, axes, table, volume_axes);
   axes.attach();
   file.close();
@@ -114,4 +114,4 @@ std::string tomography_report(Tomography const& result) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -5,7 +5,7 @@
 
 #include "studies/compare/tomography.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Writes a reconstructed volume as HDF5 (docs/file-formats.md). Its dataset density_kg_m3 can be the medium.field.file
 /// of a setup. Another ending than .h5 selects one of the formats of write_grid_table(), with the quantities at the
@@ -27,4 +27,4 @@ Vec3d find_grid_centre(RegularGrid const& grid);
 void write_density_volume(std::string const& path, RegularGrid const& grid, std::vector<double> const& density,
                           std::string const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

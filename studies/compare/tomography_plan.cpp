@@ -16,7 +16,7 @@
 #include "studies/compare/tomography.h"
 #include "studies/compare/tomography_file.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ std::vector<std::string> write_tomography_setups(TomographyPlan const& plan, std
   return setups;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

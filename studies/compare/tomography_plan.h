@@ -5,7 +5,7 @@
 
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Options of setups that simulate a tomographic measurement.
 struct TomographyPlan {
@@ -23,4 +23,4 @@ struct TomographyPlan {
 /// @throws DataError, OutputError
 std::vector<std::string> write_tomography_setups(TomographyPlan const& plan, std::string const& folder);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

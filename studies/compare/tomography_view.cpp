@@ -18,7 +18,7 @@
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/exported_vectors.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ TomographyView read_tomography_view(TomographyOptions const& options, std::size_
   return view;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -4,7 +4,7 @@
 #include "studies/case/case.h"
 #include "studies/compare/tomography.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// One view of a tomographic measurement, in the frame of the volume.
 struct TomographyView {
@@ -32,4 +32,4 @@ TomographyView read_tomography_view(TomographyOptions const& options, std::size_
 tomography::ViewOptics trace_sight_lines(Setup const& setup, std::vector<Vec2d> const& at_px,
                                          Pose<double> const& volume);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -6,7 +6,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/tracking/gaussian_window.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 constexpr double least_light = 0.1;  // minimum light of a dot, relative to the median
@@ -54,4 +54,4 @@ WindowTruth tracked_truth(GroundTruth const& dots, std::span<double const> flux,
   return truth;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -8,7 +8,7 @@
 #include "render/scene/ground_truth.h"
 #include "render/scene/setup.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Adds the positions of the dots of a BOS target in the reference image to settings of dot tracking, which then
 /// searches for no others; changes no other settings.
@@ -28,4 +28,4 @@ WindowTruth tracked_truth(GroundTruth const& dots, std::span<double const> flux,
                           std::vector<Vec2d> const& point_truth, std::vector<Vec2d> const& position_px,
                           CorrelationSettings const& settings, TruthAt at);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 std::string describe_uncorrected_bias(ComparisonKind const& kind) {
   return std::string("the true displacement averaged over the window minus the displacement ") + kind.bias +
@@ -22,4 +22,4 @@ double uncorrected_bias_px(Comparison const& comparison) {
   return std::sqrt(squares / count);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -4,7 +4,7 @@
 
 #include "studies/compare/comparison_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 
 /// Returns the definition of the uncorrected bias, to follow "the uncorrected bias is NUMBER: ". It is the
 /// window-averaged truth that the frames contain (Comparison::recorded()) minus theory (Eq. 9; for PIV, the flow). It
@@ -14,4 +14,4 @@ std::string describe_uncorrected_bias(ComparisonKind const& kind);
 /// Returns the uncorrected bias of a comparison: rms over the compared vectors, per component [px].
 double uncorrected_bias_px(Comparison const& comparison);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

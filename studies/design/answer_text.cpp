@@ -10,7 +10,7 @@
 #include "studies/design/sheet.h"
 #include "studies/design/verification_text.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -200,4 +200,4 @@ Json answer_json(AnsweredQuestion const& answered) {
   return json;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -7,7 +7,7 @@
 #include "studies/design/recommend.h"
 #include "studies/design/verification.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// A design question with its answer, its variants and its verification.
 struct AnsweredQuestion {
@@ -38,4 +38,4 @@ std::string answer_text(AnsweredQuestion const& answered);
 /// alternatives, conflicts and relaxations.
 nlohmann::ordered_json answer_json(AnsweredQuestion const& answered);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -7,7 +7,7 @@
 #include "render/medium/gladstone_dale.h"
 #include "studies/design/sheet.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using unit::mm;
@@ -293,4 +293,4 @@ DesignSheet bos_sheet(Setup const& setup, DesignPoint<double> const& bench) {
   return sheet;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

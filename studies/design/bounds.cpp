@@ -9,7 +9,7 @@
 #include "render/base/units.h"
 #include "studies/design/simulation.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using unit::mm;
@@ -226,4 +226,4 @@ std::vector<Limit> feasibility_limits(FixedDesignParameters const& given) {
   return limits;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -18,7 +18,7 @@ template <typename T, int N>
 struct Jet;
 }  // namespace ceres
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 struct Estimate;
 struct SimulatedDesign;
@@ -142,4 +142,4 @@ DesignPoint<T> design_point_at(DesignBranch const& branch, std::vector<T> const&
   return bench;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

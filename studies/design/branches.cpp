@@ -11,7 +11,7 @@
 #include "studies/case/uncertain_inputs.h"
 #include "studies/design/sheet.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 constexpr std::array<char const*, 4> question_tables{"requirements", "limits", "inventory", "free"};
@@ -207,4 +207,4 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
   return toml_document(root);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

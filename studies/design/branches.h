@@ -7,7 +7,7 @@
 #include "studies/case/case.h"
 #include "studies/design/bounds.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// A combination of a camera with a lens prescription, or with the thin lens defined by the design variables.
 struct DesignVariant {
@@ -46,4 +46,4 @@ std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> c
 std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question,
                           DesignPoint<double> const& bench);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

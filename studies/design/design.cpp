@@ -16,7 +16,7 @@
 #include "studies/design/sheet_text.h"
 #include "studies/sweep/manifest.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 /// Prevents the setup of a rendered case or planned study from being overwritten, since its results would no longer
@@ -96,12 +96,12 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
 
 }  // namespace
 
-DesignReport design(DesignRequest const& request) {
+DesignReport answer_design(DesignRequest const& request) {
   SetupDocument document = read_setup_document(request.setup, request.overrides);
-  return design(std::move(document), request);
+  return answer_design(std::move(document), request);
 }
 
-DesignReport design(SetupDocument document, DesignRequest const& request) {
+DesignReport answer_design(SetupDocument document, DesignRequest const& request) {
   SetupDocument const written = document.copy();
   std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
   std::optional<DesignQuestion> question = read_design_question(document);
@@ -138,4 +138,4 @@ nlohmann::ordered_json design_json(DesignReport const& report) {
   return json;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

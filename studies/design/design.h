@@ -15,7 +15,7 @@
 #include "studies/design/sheet.h"
 #include "studies/design/verification.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Request to `gladstone design`.
 struct DesignRequest {
@@ -46,11 +46,12 @@ struct DesignReport {
 /// @throws SetupError with all problems of the setup and the question
 /// @throws DataError if the design has no light cone, or for --apply without [requirements]
 /// @throws OutputError if a file cannot be written
-DesignReport design(DesignRequest const& request);
-/// Like design() above, for a setup in memory; request.setup is its name in messages and request.overrides are ignored.
-DesignReport design(SetupDocument document, DesignRequest const& request);
+DesignReport answer_design(DesignRequest const& request);
+/// Like answer_design() above, for a setup in memory; request.setup is its name in messages and request.overrides are
+/// ignored.
+DesignReport answer_design(SetupDocument document, DesignRequest const& request);
 
 /// Returns the design sheets, the uncertainty and the answer as JSON.
 nlohmann::ordered_json design_json(DesignReport const& report);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -1,6 +1,6 @@
 #include "studies/design/design_point.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 double resolved_wavelength(DesignPoint<double> const& bench) {
   // Initial guess: a Gaussian with the same curvature at long waves, 1 - (2 pi sigma / wavelength)^2 / 2; the sigma of
@@ -19,4 +19,4 @@ double resolved_wavelength(DesignPoint<double> const& bench) {
   return high;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -11,7 +11,7 @@
 #include "studies/case/random_error.h"
 #include "studies/design/window_transfer.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Given properties of a BOS set-up, which do not change with distances or lens. In SI.
 struct FixedDesignParameters {
@@ -157,4 +157,4 @@ T resolved_wavelength(DesignPoint<T> const& bench, DesignPoint<double> const& va
   return wavelength - (bench.transfer(T(wavelength)) - transfer_at_resolution) / slope;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

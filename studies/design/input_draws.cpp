@@ -9,7 +9,7 @@
 #include "render/base/random_variates.h"
 #include "studies/case/correlation_matrix.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 /// Draws chi squared over its degrees of freedom, which may be any real number: twice a gamma variate with half of them
@@ -121,4 +121,4 @@ std::string drawn_distribution(std::vector<MeasurementInput> const& inputs, std:
   return to_string(inputs[input].distribution);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

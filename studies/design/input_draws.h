@@ -7,7 +7,7 @@
 #include "render/base/random.h"
 #include "studies/design/propagation.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Group of inputs correlated directly or through other inputs; an uncorrelated input forms a group of one.
 struct CorrelatedGroup {
@@ -42,4 +42,4 @@ class InputDraws {
   Eigen::MatrixXd factor_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -7,7 +7,7 @@
 #include "render/render.h"
 #include "studies/case/log_silencer.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 constexpr double step_share = 1e-3;      ///< step of the central difference, relative to the value
@@ -155,4 +155,4 @@ MeasurementUncertainty measurement_uncertainty(CaseSetup const& loaded, std::vec
   return told;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -8,7 +8,7 @@
 #include "studies/design/design_point.h"
 #include "studies/design/propagation.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Uncertainty of a density gradient measured with a setup, by contributions of the inputs.
 struct MeasurementUncertainty {
@@ -48,4 +48,4 @@ std::vector<std::string> correlation_texts(std::vector<MeasurementInput> const& 
 std::string uncertainty_text(MeasurementUncertainty const& uncertainty);
 nlohmann::ordered_json uncertainty_json(MeasurementUncertainty const& uncertainty);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -6,7 +6,7 @@
 #include "studies/compare/uncorrected_bias.h"
 #include "studies/design/measurement_inputs.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 /// Tolerance of derivatives d ln / d ln by formula and by ray tracing, for off-axis effects and finite differences.
@@ -130,4 +130,4 @@ nlohmann::ordered_json uncertainty_json(MeasurementUncertainty const& uncertaint
   return json;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

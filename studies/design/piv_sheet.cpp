@@ -8,7 +8,7 @@
 #include "studies/case/expected_particles.h"
 #include "studies/design/sheet.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using unit::mm;
@@ -124,4 +124,4 @@ DesignSheet piv_sheet(CaseSetup const& loaded) {
   return sheet;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

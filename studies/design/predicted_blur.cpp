@@ -9,7 +9,7 @@
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 constexpr int spacing_px = 2;  ///< lattice spacing; a window averages over many nodes
@@ -126,4 +126,4 @@ PredictedBlur predicted_blur(Setup const& setup, DesignPoint<double> const& benc
   return blur;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -5,7 +5,7 @@
 #include "render/scene/setup.h"
 #include "studies/design/design_point.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Closed-form prediction of the blur of a setup's field: displacement minus small-angle theory (Eq. 9) at points.
 struct PredictedBlur {
@@ -21,4 +21,4 @@ struct PredictedBlur {
 /// @param places_px  positions of the vectors, in pixels of that setup's camera
 PredictedBlur predicted_blur(Setup const& setup, DesignPoint<double> const& bench, std::vector<Vec2d> const& places_px);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

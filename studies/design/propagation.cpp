@@ -8,7 +8,7 @@
 #include "render/base/random.h"
 #include "studies/design/input_draws.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using InputJet = ceres::Jet<double, static_cast<int>(gradient_inputs)>;
@@ -196,4 +196,4 @@ double common_relative_uncertainty(GradientMeasurement<double> at, std::vector<M
   return std::sqrt(std::max(0.0, parts.dot(coefficients_of(inputs) * parts)));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

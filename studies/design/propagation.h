@@ -9,7 +9,7 @@
 #include "render/base/units.h"
 #include "studies/case/uncertain_inputs.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Inputs from which a density gradient is computed.
 enum class GradientInput {
@@ -125,4 +125,4 @@ std::string drawn_distribution(std::vector<MeasurementInput> const& inputs, std:
 /// to all vectors.
 double common_relative_uncertainty(GradientMeasurement<double> at, std::vector<MeasurementInput> const& inputs);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

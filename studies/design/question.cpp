@@ -10,7 +10,7 @@
 #include "render/files/text_file.h"
 #include "studies/design/solve.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 constexpr std::size_t most_values = 1000;
@@ -237,4 +237,4 @@ std::optional<DesignQuestion> read_design_question(SetupDocument& document) {
   return question;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

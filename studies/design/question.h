@@ -8,7 +8,7 @@
 #include "render/setup/setup_node.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Design variables.
 enum class Choice { focal_length, f_number, z_a, z_d, dot_diameter };
@@ -78,4 +78,4 @@ struct DesignQuestion {
 /// @return nullopt without a table [requirements]
 std::optional<DesignQuestion> read_design_question(SetupDocument& document);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

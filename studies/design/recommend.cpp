@@ -10,7 +10,7 @@
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 constexpr double stricter = 0.01;
@@ -263,4 +263,4 @@ Recommendation recommend(Objective objective, std::vector<Limit> const& required
   return answer;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -6,7 +6,7 @@
 
 #include "studies/design/solve.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Result for one combination of the discrete design variables.
 struct BranchOutcome {
@@ -70,4 +70,4 @@ bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const&
 Recommendation recommend(Objective objective, std::vector<Limit> const& required,
                          std::vector<DesignBranch> const& branches);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

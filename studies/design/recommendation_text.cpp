@@ -8,7 +8,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using unit::mm;
@@ -143,4 +143,4 @@ std::string recommendation_text(AnsweredQuestion const& answered) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -4,7 +4,7 @@
 
 #include "studies/design/answer_text.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Returns the name of the objective, e.g. "gradient_min".
 char const* objective_word(AnsweredQuestion const& answered);
@@ -20,4 +20,4 @@ std::string outcome_verdict(AnsweredQuestion const& answered, BranchOutcome cons
 /// @pre answered.answer.feasible()
 std::string recommendation_text(AnsweredQuestion const& answered);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -16,7 +16,7 @@
 #include "studies/case/json_text.h"
 #include "studies/design/sheet_text.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using unit::mm;
@@ -253,4 +253,4 @@ nlohmann::ordered_json overview_json(SetupOverview const& overview) {
   return json;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -8,7 +8,7 @@
 #include "studies/case/render_cost.h"
 #include "studies/design/sheet.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Quantities that follow from a setup of one camera, before anything is rendered.
 struct SetupOverview {
@@ -30,4 +30,4 @@ std::string overview_text(SetupOverview const& overview);
 /// Returns the overview as JSON: the rows by their keys, and `render`.
 nlohmann::ordered_json overview_json(SetupOverview const& overview);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

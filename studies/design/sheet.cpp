@@ -9,7 +9,7 @@
 #include "render/scene/scene.h"
 #include "studies/case/light_exposure.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 /// Returns half the width and height of the camera's view in the medium's mid-plane [m].
@@ -95,4 +95,4 @@ Warnings list_neglected_effects(Setup const& setup) {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

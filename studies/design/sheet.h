@@ -9,7 +9,7 @@
 #include "studies/case/result_rows.h"
 #include "studies/design/design_point.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Source of the formulas for the image diameters of dots and particles.
 inline constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
@@ -59,4 +59,4 @@ DesignSheet bos_sheet(Setup const& setup, DesignPoint<double> const& bench);
 /// @pre loaded.setup.piv
 DesignSheet piv_sheet(CaseSetup const& loaded);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

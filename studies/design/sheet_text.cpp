@@ -9,7 +9,7 @@
 
 #include "studies/case/json_text.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -69,4 +69,4 @@ Json sheet_json(DesignSheet const& sheet) {
   return json;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -6,7 +6,7 @@
 
 #include "studies/design/sheet.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Formats the sheet as a table: number, quantity, value, margin, formula, source, note. Violated rows come first, then
 /// marginal ones, then the others in the order of their numbers.
@@ -21,4 +21,4 @@ nlohmann::ordered_json sheet_values(std::vector<ResultRow> const& rows);
 /// Returns every value by its key, fields of view as [width, height], and all rows in "rows"; null: unknown.
 nlohmann::ordered_json sheet_json(DesignSheet const& sheet);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -7,7 +7,7 @@
 #include "render/method.h"
 #include "studies/design/predicted_blur.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 bool inside(Vec2d place, Setup const& setup, double border) {
@@ -149,4 +149,4 @@ WaveShares compute_wave_shares(Repeats const& repeats, double wavelength, int wi
   return shares;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -6,7 +6,7 @@
 #include "studies/compare/budget_stages.h"
 #include "studies/design/simulation.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Results of all repeats with one medium, at the vectors of the lattice.
 struct Repeats {
@@ -36,4 +36,4 @@ void add_errors(SimulatedDesign& bench, Repeats const& repeats, DesignPoint<doub
 /// @param window_px   size of the last pass's interrogation window [px]
 WaveShares compute_wave_shares(Repeats const& repeats, double wavelength, int window_px);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -7,7 +7,7 @@
 #include "studies/design/simulated_repeats.h"
 #include "studies/sweep/plan.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 constexpr double wave_strain = 0.02;   ///< image strain caused by a wave: the largest in the estimator's study
@@ -168,4 +168,4 @@ SimulatedDesign simulate(std::string const& setup, DesignPoint<double> const& be
   return simulated;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

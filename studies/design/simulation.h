@@ -6,7 +6,7 @@
 #include "studies/design/branches.h"
 #include "studies/sweep/case_runner.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// A simulated quantity with its standard error; NaN: unknown.
 struct Estimate {
@@ -68,4 +68,4 @@ SimulatedDesign simulate(std::string const& setup, DesignPoint<double> const& be
                          std::uint64_t seed, CaseRunner& runner, std::string const& device,
                          std::function<void()> const& finished);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

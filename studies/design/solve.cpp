@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlopt.hpp>
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using Jet = ceres::Jet<double, choice_count>;
@@ -223,4 +223,4 @@ BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, K
   return best;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

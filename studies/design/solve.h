@@ -2,7 +2,7 @@
 
 #include "studies/design/bounds.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Excess, as the logarithm of a ratio, up to which a limit counts as met; allows for rounding of solutions on the
 /// limit.
@@ -35,4 +35,4 @@ BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, K
 BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch,
                                KnownDesigns const& known = {});
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

@@ -7,7 +7,7 @@
 
 #include "render/base/progress.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using unit::mm;
@@ -212,4 +212,4 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
   return verification;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

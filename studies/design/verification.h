@@ -8,7 +8,7 @@
 #include "studies/design/recommend.h"
 #include "studies/design/simulation.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// A quantity predicted by formula and measured in simulation.
 struct VerifiedQuantity {
@@ -76,4 +76,4 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
                     std::vector<DesignBranch> const& branches, Recommendation const& answer,
                     VerificationPlan const& plan, Backend device);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

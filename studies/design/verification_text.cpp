@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace gladstone {
+namespace gladstone::inline design {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -120,4 +120,4 @@ Json verification_json(Verification const& verification) {
   return json;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

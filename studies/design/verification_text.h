@@ -5,7 +5,7 @@
 
 #include "studies/design/verification.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Formats a comparison of predicted and simulated quantities with explanations of the differences, and lists
 /// requirements that are not met.
@@ -15,4 +15,4 @@ std::string verification_text(Verification const& verification, DesignQuestion c
 /// all designs.
 nlohmann::ordered_json verification_json(Verification const& verification);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

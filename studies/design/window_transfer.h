@@ -6,7 +6,7 @@
 #include "analysis/correlation/window_ops.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline design {
 
 /// Amplitude transfer of an interrogation window for a displacement wave along one axis. Correlation multiplies two
 /// images weighted by W, so pixels have the weight W^2, and the transfer is sum W^2(x) cos(2 pi x / wavelength) / sum
@@ -58,4 +58,4 @@ class WindowTransfer {
   std::vector<double> weights_;  ///< weights of the pixels on one side; their sum is 1
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline design

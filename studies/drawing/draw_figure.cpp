@@ -10,14 +10,14 @@
 #include "studies/drawing/gnuplot.h"
 #include "studies/drawing/templates.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 namespace {
 
-using figures::Axis;
-using figures::Box;
-using figures::Layer;
-using figures::LegendPlace;
-using figures::Panel;
+using plot::Axis;
+using plot::Box;
+using plot::Layer;
+using plot::LegendPlace;
+using plot::Panel;
 
 constexpr double title_above = 16;              ///< distance from the title of a panel to its upper edge [px]
 constexpr double bar_gap = 10, bar_width = 13;  ///< distance from a map to its colour bar, and width of the bar [px]
@@ -30,17 +30,17 @@ std::string quoted(std::string_view text) { return GnuplotScript::quoted(text); 
 std::string coordinate(double value) { return std::isfinite(value) ? fmt::format("{:.10g}", value) : "*"; }
 
 /// @param texts  false: the ticks are drawn without their texts
-std::string tick_list(std::vector<figures::Tick> const& ticks, bool texts) {
+std::string tick_list(std::vector<plot::Tick> const& ticks, bool texts) {
   std::string list;
-  for (figures::Tick const& tick : ticks) {
+  for (plot::Tick const& tick : ticks) {
     list += fmt::format("{}{} {:.10g}", list.empty() ? "" : ", ", GnuplotScript::quoted_tick(texts ? tick.text : ""),
                         tick.at);
   }
   return '(' + list + ')';
 }
 
-std::string dash_type(figures::Dash dash) {
-  return dash == figures::Dash::solid ? "" : dash == figures::Dash::dashed ? " dashtype 2" : " dashtype 3";
+std::string dash_type(plot::Dash dash) {
+  return dash == plot::Dash::solid ? "" : dash == plot::Dash::dashed ? " dashtype 2" : " dashtype 3";
 }
 
 bool has_point(Layer const& layer) {
@@ -113,11 +113,10 @@ class FigureScript {
     Box const& box = panel.box;
     command("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", screen_x(box.left), screen_x(box.right));
     command("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", screen_y(box.top), screen_y(box.bottom));
-    if (panel.border != figures::Border::full)
-      command("set border {}", panel.border == figures::Border::bottom ? 1 : 0);
+    if (panel.border != plot::Border::full) command("set border {}", panel.border == plot::Border::bottom ? 1 : 0);
     if (panel.equal_scales) command("set size ratio -1");
-    if (panel.grid != figures::Grid::none) {
-      command("set grid {} @grid", panel.grid == figures::Grid::both ? "xtics ytics" : "noxtics ytics");
+    if (panel.grid != plot::Grid::none) {
+      command("set grid {} @grid", panel.grid == plot::Grid::both ? "xtics ytics" : "noxtics ytics");
     }
   }
 
@@ -141,19 +140,18 @@ class FigureScript {
               fmt::format("'{},{:.4g}'", text.font.family, text.font.size), role);
   }
 
-  void add_label(figures::Label const& label, std::string const& place, std::string const& font,
-                 std::string_view role) {
+  void add_label(plot::Label const& label, std::string const& place, std::string const& font, std::string_view role) {
     std::string const colour = label.colour.empty() ? fmt::format("{}_colour", role) : quoted(label.colour);
     command("set label {} at {} {} front {} font {} textcolor rgb {}", quoted(label.text), place,
-            label.align == figures::Align::left    ? "left"
-            : label.align == figures::Align::right ? "right"
-                                                   : "center",
+            label.align == plot::Align::left    ? "left"
+            : label.align == plot::Align::right ? "right"
+                                                : "center",
             label.boxed ? "boxed" : "", font, colour);
   }
 
   void add_labels(Panel const& panel) {
     if (!panel.title.empty()) {
-      figures::Label const title{panel.title, (panel.box.left + panel.box.right) / 2, panel.box.top - title_above};
+      plot::Label const title{panel.title, (panel.box.left + panel.box.right) / 2, panel.box.top - title_above};
       FigureFont font = font_of(figure_.kind, "panel");
       double const room = panel.box.right - panel.box.left + 2 * title_beyond, width = text_width(panel.title, font);
       if (width > room) font.size *= room / width;
@@ -163,7 +161,7 @@ class FigureScript {
     std::vector<PlacedText> const placed = place_labels(figure_, panel);
     for (PlacedText const& text : placed) add(text);
     if (!placed.empty()) return;
-    for (figures::Label const& label : panel.labels) {
+    for (plot::Label const& label : panel.labels) {
       std::string_view const role = to_string(label.role);
       add_label(label,
                 fmt::format("first {:.10g},{:.10g} offset screen {:.6f},{:.6f}", label.x, label.y,
@@ -173,7 +171,7 @@ class FigureScript {
   }
 
   void add_legend(Panel const& panel) {
-    figures::Legend const& legend = panel.legend;
+    plot::Legend const& legend = panel.legend;
     Box const& box = panel.box;
     std::string place;
     switch (legend.place) {
@@ -220,7 +218,7 @@ class FigureScript {
   }
 
   /// Returns the element of the plot command that draws a map, and sets its colours.
-  std::string map_element(figures::Map const& map, Box const& box) {
+  std::string map_element(plot::Map const& map, Box const& box) {
     constexpr std::array<char const*, 3> palettes{"diverging", "sequential", "grey"};
     command("set object 1 rectangle from graph 0,0 to graph 1,1 @missing behind");
     command("set palette @{}", palettes[static_cast<std::size_t>(map.palette)]);
@@ -291,4 +289,4 @@ class FigureScript {
 
 void draw_figure(Figure const& figure, std::string const& path) { FigureScript(figure).write(path); }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

@@ -5,7 +5,7 @@
 #include "render/base/error.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 
 /// Thrown if the program gnuplot is not installed. Only figures are affected.
 class GnuplotMissing : public Error {
@@ -22,4 +22,4 @@ class GnuplotMissing : public Error {
 /// @throws OutputError if the figure cannot be created or written
 void draw_figure(Figure const& figure, std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

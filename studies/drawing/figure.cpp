@@ -7,7 +7,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 
 std::string house_colour(std::size_t index) {
   constexpr std::array<char const*, 7> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
@@ -15,7 +15,7 @@ std::string house_colour(std::size_t index) {
   return colours[index % colours.size()];
 }
 
-std::vector<figures::Tick> linear_ticks(double low, double high, double most) {
+std::vector<plot::Tick> linear_ticks(double low, double high, double most) {
   GLADSTONE_EXPECTS(low < high && most >= 1);
   double const least = (high - low) / most, power = std::pow(10.0, std::floor(std::log10(least)));
   double step = 10 * power;
@@ -23,7 +23,7 @@ std::vector<figures::Tick> linear_ticks(double low, double high, double most) {
     if (factor * power >= least) step = factor * power;
   }
   constexpr double rounding = 1e-9;
-  std::vector<figures::Tick> ticks;
+  std::vector<plot::Tick> ticks;
   for (double k = std::ceil(low / step - rounding); k * step <= high + rounding * step; ++k) {
     double const at = k * step + 0.0;  // no "-0"
     ticks.push_back({at, fmt::format("{:.6g}", at)});
@@ -31,10 +31,10 @@ std::vector<figures::Tick> linear_ticks(double low, double high, double most) {
   return ticks;
 }
 
-std::vector<figures::Tick> logarithmic_ticks(double low, double high) {
+std::vector<plot::Tick> logarithmic_ticks(double low, double high) {
   GLADSTONE_EXPECTS(low > 0 && high > low);
   bool const fine = std::log10(high / low) < 3.0;
-  std::vector<figures::Tick> ticks;
+  std::vector<plot::Tick> ticks;
   for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10) {
     for (double const factor : {1.0, 2.0, 5.0}) {
       double const at = factor * power;
@@ -45,4 +45,4 @@ std::vector<figures::Tick> logarithmic_ticks(double low, double high) {
   return ticks;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

@@ -8,11 +8,11 @@
 
 #include "render/base/image.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 
 /// Parts of a figure as data. Positions on the page are in px from its upper left corner, all others in the units of
 /// the axes. draw_figure() draws them with the look of the templates (*.gp).
-namespace figures {
+namespace plot {
 
 inline constexpr double automatic = std::numeric_limits<double>::quiet_NaN();
 
@@ -116,20 +116,18 @@ struct Panel {
   bool equal_scales = false;  ///< true: the same scale on both axes
 };
 
-}  // namespace figures
+}  // namespace plot
 
 /// A figure as data.
 struct Figure {
   int width_px = 820, height_px = 520;
   enum class Kind { chart, map, drawing };
   Kind kind = Kind::chart;  ///< selects the template
-  std::vector<figures::Label> labels = {};
-  std::vector<figures::Panel> panels = {};
+  std::vector<plot::Label> labels = {};
+  std::vector<plot::Panel> panels = {};
 
   /// Adds the title in the middle of the upper edge.
-  void add_title(std::string text) {
-    labels.push_back({std::move(text), width_px / 2.0, 26, figures::TextRole::title});
-  }
+  void add_title(std::string text) { labels.push_back({std::move(text), width_px / 2.0, 26, plot::TextRole::title}); }
 };
 
 /// A figure with the name of its file, or by which a reader chooses it.
@@ -143,10 +141,10 @@ std::string house_colour(std::size_t index);
 
 /// Returns ticks at multiples of a step of 1, 2 or 5 times a power of ten, at most `most` of them.
 /// @pre low < high
-std::vector<figures::Tick> linear_ticks(double low, double high, double most);
+std::vector<plot::Tick> linear_ticks(double low, double high, double most);
 
 /// Returns ticks at 1, 2 and 5 times powers of ten, or at powers of ten only if the range exceeds three decades.
 /// @pre 0 < low < high
-std::vector<figures::Tick> logarithmic_ticks(double low, double high);
+std::vector<plot::Tick> logarithmic_ticks(double low, double high);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

@@ -9,10 +9,10 @@
 
 #include "studies/drawing/figure_texts.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 namespace {
 
-using namespace figures;
+using namespace plot;
 using Json = nlohmann::json;
 
 /// Returns the word of an enumerator.
@@ -154,4 +154,4 @@ Json figure_json(Figure const& figure) {
   return json;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

@@ -8,13 +8,13 @@
 #include "render/base/contracts.h"
 #include "studies/drawing/templates.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 namespace {
 
-using figures::Align;
-using figures::Box;
-using figures::Label;
-using figures::TextRole;
+using plot::Align;
+using plot::Box;
+using plot::Label;
+using plot::TextRole;
 
 constexpr double edge_px = 8;  ///< least distance of texts from the edges of the page
 
@@ -56,7 +56,7 @@ bool overlap(Box const& a, Box const& b) {
 }
 
 /// Returns where a value is between the ends of an axis, 0 at the lower one.
-double fraction(figures::Axis const& axis, double value) {
+double fraction(plot::Axis const& axis, double value) {
   if (axis.logarithmic) return std::log(value / axis.low) / std::log(axis.high / axis.low);
   return (value - axis.low) / (axis.high - axis.low);
 }
@@ -93,7 +93,7 @@ std::string colour_of(TextRole role) {
   return std::string(embedded::figure_look.substr(found + start.size(), 7));
 }
 
-std::vector<std::string> colours_of(figures::Palette palette) {
+std::vector<std::string> colours_of(plot::Palette palette) {
   constexpr std::array<std::string_view, 3> starts{"\ndiverging = ", "\nsequential = ", "\ngrey = "};
   auto const found = embedded::figure_look.find(starts[static_cast<std::size_t>(palette)]);
   GLADSTONE_ENSURES(found != std::string_view::npos);
@@ -128,7 +128,7 @@ std::vector<PlacedText> place_texts(Figure const& figure) {
   return placed;
 }
 
-std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const& panel) {
+std::vector<PlacedText> place_labels(Figure const& figure, plot::Panel const& panel) {
   std::vector<PlacedText> placed;
   if (!std::isfinite(panel.x.low + panel.x.high + panel.y.low + panel.y.high)) return placed;
   constexpr double step = 4, furthest = 100;  // [px]
@@ -151,13 +151,13 @@ std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const&
   return placed;
 }
 
-double legend_width(figures::Panel const& panel, Figure::Kind kind) {
+double legend_width(plot::Panel const& panel, Figure::Kind kind) {
   constexpr double sample = 52;  // width of the sample line and of the gaps on both sides of it [px]
   double longest = 0;
-  for (figures::Layer const& layer : panel.layers) {
+  for (plot::Layer const& layer : panel.layers) {
     longest = std::max(longest, text_width(layer.name, font_of(kind, "legend")));
   }
   return legend_gap + sample + longest;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

@@ -24,7 +24,7 @@
 
 extern char** environ;
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,4 +188,4 @@ std::string GnuplotScript::quoted_tick(std::string_view text) {
   return quoted(format);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

@@ -8,7 +8,7 @@
 #include "render/base/image.h"
 #include "studies/drawing/temporary_directory.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 
 /// Script and data for one run of gnuplot. They are stored in a temporary directory that is removed on destruction.
 class GnuplotScript {
@@ -52,4 +52,4 @@ class GnuplotScript {
   int files_ = 0;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

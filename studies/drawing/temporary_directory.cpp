@@ -9,7 +9,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 namespace {
 
 constexpr char const* stem = ".gladstone.";
@@ -39,4 +39,4 @@ TemporaryDirectory::TemporaryDirectory() {
                                "); set TMPDIR to a writable folder");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

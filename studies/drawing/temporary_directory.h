@@ -5,7 +5,7 @@
 
 #include "render/files/partial.h"
 
-namespace gladstone {
+namespace gladstone::inline drawing {
 
 /// Unique temporary directory, readable by this user only; removed on destruction. Directories left by killed processes
 /// of this user are removed when the next one is created in the same place (TMPDIR).
@@ -20,4 +20,4 @@ class TemporaryDirectory {
   std::string path_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline drawing

@@ -24,7 +24,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/map_figures.h"
 
-namespace gladstone {
+namespace gladstone::inline examples {
 namespace {
 
 /// One instant of the turbulence field.
@@ -197,4 +197,4 @@ std::string run_demo(std::string const& folder, Backend const& device) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline examples

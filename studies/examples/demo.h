@@ -4,7 +4,7 @@
 
 #include "studies/case/backend.h"
 
-namespace gladstone {
+namespace gladstone::inline examples {
 
 /// Reproduces the experiment of Rajendran et al. (2019, section 4, Table 1) at both instants of the turbulence field:
 /// first on a field as coarse as the authors' sample, from setup to error report (one CASE folder each, figure4.png);
@@ -13,4 +13,4 @@ namespace gladstone {
 /// @return text of summary.md
 std::string run_demo(std::string const& folder, Backend const& device);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline examples

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline examples {
 namespace {
 
 /// Formats one part for every instant, joined by "and".
@@ -169,4 +169,4 @@ std::string demo_details(std::vector<DemoInstant> const& instants) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline examples

@@ -5,7 +5,7 @@
 
 #include "studies/compare/agreement.h"
 
-namespace gladstone {
+namespace gladstone::inline examples {
 
 /// Results of the demo at one instant of the turbulence field.
 struct DemoInstant {
@@ -37,4 +37,4 @@ std::string demo_story(Setup const& setup, std::vector<DemoInstant> const& insta
 /// Formats a table of every point of the agreement figure and the error reports of the paper's case.
 std::string demo_details(std::vector<DemoInstant> const& instants);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline examples

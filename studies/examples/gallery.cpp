@@ -18,7 +18,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/map_panels.h"
 
-namespace gladstone {
+namespace gladstone::inline examples {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ std::string run_gallery(std::string const& folder, Backend const& device) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline examples

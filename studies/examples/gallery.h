@@ -4,7 +4,7 @@
 
 #include "studies/case/backend.h"
 
-namespace gladstone {
+namespace gladstone::inline examples {
 
 /// Renders Figure 1 of Rajendran et al. (2019) and related cases, studies/cases/figure1/*.toml: ideal particle images,
 /// and the effect of each imaging error. Writes one case per folder FOLDER/NAME/. NAME/beside.png shows its first frame
@@ -13,4 +13,4 @@ namespace gladstone {
 /// @throws SetupError, OutputError, DataError, DeviceError
 std::string run_gallery(std::string const& folder, Backend const& device);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline examples

@@ -5,10 +5,10 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 constexpr double smallest = 0.2, largest = 10;
 
@@ -76,4 +76,4 @@ Figure make_agreement_figure(std::vector<AgreementSeries> const& series, std::ve
   return figure;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

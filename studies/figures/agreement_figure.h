@@ -6,7 +6,7 @@
 #include "studies/compare/cone_theory.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Agreement of rays with the small-angle theory (Eq. 9) on one field, at several ratios of structure size to cone
 /// diameter.
@@ -35,4 +35,4 @@ std::vector<double> agreement_sizes();
 /// @param single_wave  amplitude ratio of a single wave at agreement_sizes() [1]
 Figure make_agreement_figure(std::vector<AgreementSeries> const& series, std::vector<double> const& single_wave);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -9,7 +9,7 @@
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 std::vector<NamedFigure> make_comparison_figures(Comparison const& comparison) {
   DisplacementField const& measured = comparison.measured;
@@ -63,4 +63,4 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
   return drawn;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -6,7 +6,7 @@
 #include "studies/compare/compare.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Figures of a comparison by their file names: displacement_maps and error_against_gradient, for vectors on a grid,
 /// error_histograms and error_budget.
@@ -19,4 +19,4 @@ std::vector<NamedFigure> make_comparison_figures(Comparison const& comparison);
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
                                          std::string const& format = "png");
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -9,10 +9,10 @@
 #include "render/base/not_a_number.h"
 #include "studies/figures/map_panels.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 /// Converts a field with rows upwards to a map with rows downwards.
 Image<double> make_map(density::PlaneGrid const& grid, std::vector<double> const& values) {
@@ -150,4 +150,4 @@ std::string describe_density_profile(Reconstruction const& reconstruction) {
       profile.is_column ? "y" : "x", profile.largest_mm);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -5,7 +5,7 @@
 #include "studies/compare/reconstruct.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Maps of the density and its standard uncertainty, and for a rendered case of the true density and the error,
 /// over x and y in mm. Nodes without a value are grey.
@@ -19,4 +19,4 @@ Figure make_density_profile(Reconstruction const& reconstruction);
 /// Describes the profile in numbers.
 std::string describe_density_profile(Reconstruction const& reconstruction);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -8,7 +8,7 @@
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 std::vector<std::string> draw_design(DesignReport const& report, std::string const& folder, std::string const& format) {
   std::vector<std::string> drawn;
@@ -32,4 +32,4 @@ std::vector<std::string> draw_design(DesignReport const& report, std::string con
   return drawn;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -5,7 +5,7 @@
 
 #include "studies/design/design.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Draws the optical layout, the design map and, if requirements trade off against each other, the front of a design.
 /// Without gnuplot, only warns.
@@ -13,4 +13,4 @@ namespace gladstone {
 /// @return paths of the figures
 std::vector<std::string> draw_design(DesignReport const& report, std::string const& folder, std::string const& format);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -9,10 +9,10 @@
 #include "studies/drawing/figure_texts.h"
 #include "studies/figures/excluded_designs.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 using unit::mm;
 constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // Z_D of the lines in the map, relative to Z_A
 
@@ -165,4 +165,4 @@ Figure make_design_front(Recommendation const& answer, Objective objective) {
   return figure;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

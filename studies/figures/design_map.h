@@ -9,7 +9,7 @@
 #include "studies/design/recommend.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// f-numbers of the curves.
 inline constexpr std::array<double, 8> map_f_numbers{2.8, 4, 5.6, 8, 11, 16, 22, 32};
@@ -41,4 +41,4 @@ Figure make_design_map(DesignPoint<double> const& bench, DesignQuestion const* q
 /// Draws the trade-off of an answer: the best objective against the limit of a requirement.
 Figure make_design_front(Recommendation const& answer, Objective objective);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -3,7 +3,7 @@
 #include "studies/case/warning_log.h"
 #include "studies/drawing/draw_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 bool draw_or_warn(std::function<void()> const& draw) {
   try {
@@ -15,4 +15,4 @@ bool draw_or_warn(std::function<void()> const& draw) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

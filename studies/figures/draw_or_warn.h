@@ -2,10 +2,10 @@
 
 #include <functional>
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Calls a function that draws figures; without gnuplot, warns that they are not drawn.
 /// @return false without gnuplot
 bool draw_or_warn(std::function<void()> const& draw);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -9,10 +9,10 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 std::vector<double> component(std::vector<Vec2d> const& values, double Vec2d::*part) {
   std::vector<double> result;
@@ -243,4 +243,4 @@ Figure make_reliability_figure(std::vector<UncertaintyBin> const& bins) {
   return {820, 480, Figure::Kind::chart, {}, {std::move(panel)}};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

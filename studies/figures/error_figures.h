@@ -10,7 +10,7 @@
 #include "render/base/vec.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Errors of a measurement against one reference at the compared vectors.
 struct ErrorSeries {
@@ -40,4 +40,4 @@ Figure make_budget_bars(std::string const& title, ErrorBudget const& budget);
 /// rms error against estimated uncertainty in bins of equal count, with the line on which they are equal.
 Figure make_reliability_figure(std::vector<UncertaintyBin> const& bins);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -9,7 +9,7 @@
 #include "studies/design/bounds.h"
 #include "studies/figures/design_map.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
 constexpr int map_columns = 160, map_rows = 240;
@@ -83,4 +83,4 @@ std::vector<ExcludedDesigns> excluded_designs(DesignPoint<double> const& bench, 
   return excluded;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -6,7 +6,7 @@
 #include "studies/design/design_point.h"
 #include "studies/design/question.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Rectangle of the design map.
 struct MapArea {
@@ -27,4 +27,4 @@ struct ExcludedDesigns {
 /// @return only limits that exclude a part of the map
 std::vector<ExcludedDesigns> excluded_designs(DesignPoint<double> const& bench, DesignQuestion const* question);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

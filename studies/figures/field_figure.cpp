@@ -15,10 +15,10 @@
 #include "render/base/units.h"
 #include "studies/figures/map_panels.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 // dimensions of the figure [px]
 constexpr int plane_width = 330, least_height = 60, most_height = 495, to_left = 66, to_right = 24, above_plane = 72,
@@ -135,4 +135,4 @@ Figure make_field_figure(FieldSource& source, bool lengths_known) {
   return figure;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -3,7 +3,7 @@
 #include "render/files/fields/field_file.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Values of a field, or the magnitude of a velocity, in the planes through its middle nodes, in the unit of the file:
 /// z = const, y = const and x = const, with a common colour scale. Axes are in mm, or numbers of nodes if the spacing
@@ -14,4 +14,4 @@ namespace gladstone {
 /// @throws Interrupted
 Figure make_field_figure(FieldSource& source, bool lengths_known);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -9,10 +9,10 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 using unit::mm;
 // sizes [px]: page, horizontal limits of the panels, height of the stretched panel, space above, between and below
 constexpr int layout_width = 1200;
@@ -217,4 +217,4 @@ Figure make_piv_layout_figure(Setup const& setup) {
                          fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

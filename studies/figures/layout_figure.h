@@ -6,7 +6,7 @@
 #include "studies/design/design_point.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Geometry of a set-up in its plane through the optical axis [m]: Z along the axis from the medium's mid-plane towards
 /// the camera, Y perpendicular to it.
@@ -42,4 +42,4 @@ Figure make_camera_layout_figure(Setup const& setup);
 /// @pre setup.piv
 Figure make_piv_layout_figure(Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -9,10 +9,10 @@
 #include "render/base/units.h"
 #include "render/optics/apparent_pupil.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 constexpr int lens_figure_width = 1200, layout_height = 460, plots_height = 330, title_height = 40;
 
@@ -251,4 +251,4 @@ Figure make_lens_figure(Lens const& lens, ParaxialLens const& paraxial, FieldAna
   return figure;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

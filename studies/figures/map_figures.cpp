@@ -9,7 +9,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
 Image<double> difference(Image<double> const& a, Image<double> const& b) {
@@ -118,4 +118,4 @@ Figure make_seed_figure4(MapAxes const& axes, std::vector<SeedFigure4Instant> co
   return make_map_figure(figure);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -7,7 +7,7 @@
 #include "render/base/image.h"
 #include "studies/figures/map_panels.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Displacement maps of one source, both components [px].
 struct NamedMaps {
@@ -46,4 +46,4 @@ struct SeedFigure4Instant {
 /// colour range, as do its gradients. The panel below the density shows the magnitude of the gradient.
 Figure make_seed_figure4(MapAxes const& axes, std::vector<SeedFigure4Instant> const& instants);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

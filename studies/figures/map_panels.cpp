@@ -10,10 +10,10 @@
 #include "analysis/errors/error_summary.h"
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 Palette palette_of(ColourScale scale) {
   if (scale == ColourScale::diverging) return Palette::diverging;
@@ -203,4 +203,4 @@ Figure make_map_figure(MapFigure const& maps) {
   return figure;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

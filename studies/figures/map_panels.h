@@ -7,7 +7,7 @@
 #include "render/base/image.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Coordinates of a map's nodes: first + step times index. Rows run downwards on the sensor: y_step > 0 with y_down for
 /// pixels, y_step < 0 without y_down for world coordinates.
@@ -60,4 +60,4 @@ struct ColourRange {
 /// Returns the range between quantiles of the finite values, so that single outliers do not dominate; never empty.
 ColourRange colour_range(Image<double> const& map, ColourScale scale);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

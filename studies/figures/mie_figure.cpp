@@ -8,10 +8,10 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 /// Maximum number of decades; beyond it, ripples of the outer decades would be invisible.
 constexpr int most_decades = 7;
@@ -112,4 +112,4 @@ Figure make_mie_figure(ScatteringDiagram const& diagram) {
   return figure;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -6,7 +6,7 @@
 #include "render/light/mie.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Light scattered by a sphere against the scattering angle, from forward to backward.
 struct ScatteringDiagram {
@@ -23,4 +23,4 @@ struct ScatteringDiagram {
 /// Values below the innermost decade are drawn at the centre.
 Figure make_mie_figure(ScatteringDiagram const& diagram);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

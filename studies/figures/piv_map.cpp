@@ -7,10 +7,10 @@
 
 #include "studies/case/expected_particles.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 constexpr std::array<double, 10> piv_f_numbers{1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32};
 constexpr double most_image_px = 4;  // maximum diameter of row F14 of the design sheet
@@ -79,4 +79,4 @@ Figure make_piv_map(Setup const& setup) {
   return figure;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

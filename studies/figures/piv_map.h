@@ -5,7 +5,7 @@
 #include "render/scene/setup.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Particle images of a setup at one f-number.
 struct PivStop {
@@ -24,4 +24,4 @@ std::vector<PivStop> piv_stops(Setup setup);
 /// well and the setup's f-number.
 Figure make_piv_map(Setup const& setup);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "studies/figures/map_panels.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
 Image<double> make_map(SequenceMoments const& moments, std::vector<Vec2d> const& values, double Vec2d::*component) {
@@ -39,4 +39,4 @@ Figure make_sequence_figure(SequenceMoments const& moments) {
   return make_map_figure(figure);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -6,7 +6,7 @@
 #include "render/base/units.h"
 #include "studies/figures/map_panels.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
 /// Converts values of the nodes, in rows upwards, to a map with rows downwards.
@@ -63,4 +63,4 @@ Figure make_stereo_figure(StereoMeasurement const& measurement) {
   return make_map_figure(figure);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -12,7 +12,7 @@
 #include "render/base/not_a_number.h"
 #include "studies/sweep/unit_ending.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
 /// Returns the standard deviation of the steps between ascending numbers, relative to their mean.
@@ -115,4 +115,4 @@ Scatter compute_scatter(std::vector<double> values, bool only_repeats_differ) {
   return {std::sqrt(squares / static_cast<double>(values.size())), *low, *high};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -5,7 +5,7 @@
 
 #include "studies/sweep/study_table.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Returns the title of an axis, e.g. "focal length [mm]" for "lens.focal_length_mm".
 std::string axis_title(std::string const& key);
@@ -40,4 +40,4 @@ struct Scatter {
 /// noise, median and the 10 and 90 % quantiles. Non-finite values are ignored; NaN if none remain.
 Scatter compute_scatter(std::vector<double> values, bool only_repeats_differ);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

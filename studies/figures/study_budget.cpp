@@ -7,10 +7,10 @@
 #include "render/base/not_a_number.h"
 #include "studies/figures/study_drawings.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 using namespace study_drawing;
 
 /// A term of the budget with its rms at every position of the axis.
@@ -185,4 +185,4 @@ std::optional<Figure> make_budget(StudyCells const& cells, std::size_t axis_inde
   return BudgetFigure(cells, axis_index, points).make();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
 /// Returns the name of a position, e.g. "Z_D 250 mm" for an axis titled "Z_D [mm]"; for categories, the label.
@@ -99,4 +99,4 @@ std::vector<CurveChoice> curves_over(StudyCells const& cells, std::size_t axis, 
   return choices;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -6,7 +6,7 @@
 
 #include "studies/figures/study_axes.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Maximum number of positions on an axis of a figure.
 inline constexpr std::size_t max_positions = 12;
@@ -54,4 +54,4 @@ struct CurveChoice {
 /// of the axis with the fewest categories, if at most `most`; else a single curve without a name.
 std::vector<CurveChoice> curves_over(StudyCells const& cells, std::size_t axis, std::size_t most);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

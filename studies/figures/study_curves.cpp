@@ -6,10 +6,10 @@
 
 #include "studies/figures/study_drawings.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 using namespace study_drawing;
 
 /// One curve of a panel.
@@ -188,4 +188,4 @@ std::optional<Figure> make_repeats(StudyCells const& points, std::size_t axis_in
                   points.table().name, points.finished(), make.only_repeats_differ ? "" : ", medians of them"));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

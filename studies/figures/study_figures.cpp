@@ -12,11 +12,11 @@
 #include "studies/figures/study_drawings.h"
 #include "studies/sweep/study_points.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace study_drawing {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 constexpr double between = 12;  ///< least distance of tick texts [px]
 constexpr double slant = 0.47;  ///< sine of the angle of slanted texts
@@ -179,4 +179,4 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
   return paths;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

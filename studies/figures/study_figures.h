@@ -6,7 +6,7 @@
 #include "studies/drawing/figure.h"
 #include "studies/sweep/study_table.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 /// Returns the error budget over every axis with several values, by the titles of the axes; without such an axis, that
 /// over the first axis. Empty if the budget is unknown.
@@ -29,4 +29,4 @@ std::vector<NamedFigure> make_budget_figures(StudyTable const& table);
 std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table,
                                     std::vector<std::string> const& formats = {"png", "svg"});
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -8,10 +8,10 @@
 #include "studies/drawing/figure_texts.h"
 #include "studies/figures/study_drawings.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 namespace {
 
-using namespace figures;
+using namespace plot;
 using namespace study_drawing;
 
 /// Errors over two axes, as rows and columns of equal cells.
@@ -124,4 +124,4 @@ std::optional<Figure> make_error_map(StudyCells const& cells, std::size_t x_axis
   return ErrorMapFigure(cells, x_axis, y_axis).make();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

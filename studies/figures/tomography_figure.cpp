@@ -5,7 +5,7 @@
 #include "render/base/units.h"
 #include "studies/figures/map_panels.h"
 
-namespace gladstone {
+namespace gladstone::inline figures {
 
 Figure make_tomography_figure(Tomography const& result) {
   RegularGrid const& grid = result.grid;
@@ -39,4 +39,4 @@ Figure make_tomography_figure(Tomography const& result) {
   return make_map_figure(figure);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline figures

@@ -6,7 +6,7 @@
 #include "render/base/units.h"
 #include "studies/oracles/oracles.h"
 
-namespace gladstone {
+namespace gladstone::inline oracles {
 namespace {
 
 constexpr auto absolute = ToleranceKind::absolute;
@@ -82,4 +82,4 @@ std::vector<OracleResult> run_oracles(Renderer& renderer) {
   return results;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline oracles

@@ -4,7 +4,7 @@
 
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline oracles {
 
 enum class ToleranceKind { absolute, relative };
 
@@ -32,4 +32,4 @@ struct OracleResult {
 /// @param renderer  used by those that require rendering
 std::vector<OracleResult> run_oracles(Renderer& renderer);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline oracles

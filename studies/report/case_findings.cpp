@@ -7,7 +7,7 @@
 #include "studies/compare/uncorrected_bias.h"
 #include "studies/report/case_view.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 std::string largest_term(ErrorBudget const& budget) {
   BudgetTerm const* largest = nullptr;
@@ -97,4 +97,4 @@ std::vector<std::string> summarize_findings(CaseView const& view) {
   return findings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

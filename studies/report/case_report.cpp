@@ -19,7 +19,7 @@
 #include "studies/report/report.h"
 #include "studies/sweep/job_array.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -263,4 +263,4 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   return page;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -10,7 +10,7 @@
 #include "studies/figures/map_figures.h"
 #include "studies/report/report_page.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// A comparison with the maps and the error series of its report.
 struct CaseView {
@@ -56,4 +56,4 @@ std::vector<std::string> uncertainty_statements(CaseView const& view);
 /// Returns the main results for the beginning of the report.
 std::vector<std::string> summarize_findings(CaseView const& view);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -10,7 +10,7 @@
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/density_figure.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 /// Returns a number of the summary; NaN for null.
@@ -95,4 +95,4 @@ std::vector<std::string> draw_density_figures(std::string const& folder, std::st
   return drawn;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -6,7 +6,7 @@
 #include "studies/compare/reconstruct.h"
 #include "studies/report/report_page.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Returns a sentence with range and uncertainty of a density, for a rendered case with its error.
 std::string summarize_density(Reconstruction const& reconstruction);
@@ -26,4 +26,4 @@ ReportSection missing_density_section(std::string const& command);
 std::vector<std::string> draw_density_figures(std::string const& folder, std::string const& format,
                                               Reconstruction const& reconstruction);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -5,7 +5,7 @@
 #include "studies/report/embedded_text.h"
 #include "studies/report/report_page.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 std::string escaped(std::string_view text) {
@@ -163,4 +163,4 @@ std::string html_page(ReportPage const& page) {
   return html;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -11,7 +11,7 @@
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 constexpr double mm = unit::millimetre;
@@ -105,4 +105,4 @@ std::vector<std::string> draw_layout_and_map(std::string const& folder, std::str
   return drawn;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -11,7 +11,7 @@
 #include "studies/drawing/figure.h"
 #include "studies/report/report_page.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Optical layout of a setup, as drawn in a report.
 struct LayoutView {
@@ -47,4 +47,4 @@ ReportBlock layout_block(LayoutView const& view, std::string const& whose);
 std::vector<std::string> draw_layout_and_map(std::string const& folder, std::string const& format,
                                              LayoutView const& view);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

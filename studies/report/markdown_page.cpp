@@ -2,7 +2,7 @@
 
 #include "studies/report/report_page.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 /// Escapes text so that it contains no Markdown syntax.
@@ -75,4 +75,4 @@ std::string markdown_page(ReportPage const& page) {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

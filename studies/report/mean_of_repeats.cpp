@@ -4,7 +4,7 @@
 
 #include "analysis/errors/error_summary.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 MeanOfRepeats mean_of_repeats(std::vector<DisplacementField> const& all, double formula_px) {
   MeanOfRepeats mean;
@@ -44,4 +44,4 @@ MeanOfRepeats mean_of_repeats(std::vector<DisplacementField> const& all, double 
   return mean;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -5,7 +5,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Mean of repeated measurements with its type A uncertainty (JCGM 100:2008, 4.2), and the individual estimates.
 struct MeanOfRepeats {
@@ -20,4 +20,4 @@ struct MeanOfRepeats {
 /// @param formula_px  random error of a measurement without uncertainties [px]
 MeanOfRepeats mean_of_repeats(std::vector<DisplacementField> const& all, double formula_px);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -16,7 +16,7 @@
 #include "studies/case/warning_log.h"
 #include "studies/compare/compared_vectors.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ double spanned_share(DisplacementField const& field, CameraSetup const& camera) 
   return (high.x - low.x) * (high.y - low.y) / (static_cast<double>(camera.columns) * camera.rows);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -8,7 +8,7 @@
 #include "render/scene/setup.h"
 #include "studies/report/report.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Files of a measurement in their present state.
 struct MeasuredFiles {
@@ -39,4 +39,4 @@ RepeatedVectors read_repeats(MeasuredFiles const& files, ReportOptions const& op
 /// Returns the fraction of the image area spanned by the vectors, from 0 to 1.
 double spanned_share(DisplacementField const& field, CameraSetup const& camera);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -9,7 +9,7 @@
 #include "studies/compare/uncorrected_bias.h"
 #include "studies/design/measurement_inputs.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 /// Returns the origin of the displacements' uncertainty.
@@ -124,4 +124,4 @@ TextTable inputs_table(MeasurementKnown const& known) {
   return table;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -9,7 +9,7 @@
 #include "studies/report/report_page.h"
 #include "studies/report/simulated_twin.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Results of a measurement from which its statements are derived; the displacement is the first input.
 struct MeasurementKnown {
@@ -34,4 +34,4 @@ MeasurementStatements measurement_statements(MeasurementKnown const& known);
 /// Formats a table of the inputs with their contributions to the uncertainty of the gradient.
 TextTable inputs_table(MeasurementKnown const& known);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -5,7 +5,7 @@
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/map_figures.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 MeasuredGradients compute_gradients(DisplacementField const& field, DesignPoint<double> const& bench, double common) {
   MeasuredGradients all;
   all.common = common;
@@ -76,4 +76,4 @@ std::string draw_measured_maps(std::string const& path, DisplacementField const&
   return path;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -8,7 +8,7 @@
 #include "studies/design/design_point.h"
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Density gradients at measured vectors with their uncertainties; components along X and Y of the world.
 struct MeasuredGradients {
@@ -39,4 +39,4 @@ std::vector<NamedFigure> make_measured_maps(DisplacementField const& field, Meas
 /// @return path of the figure
 std::string draw_measured_maps(std::string const& path, DisplacementField const& field, MeasuredGradients const& all);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

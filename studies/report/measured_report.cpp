@@ -19,7 +19,7 @@
 #include "studies/report/twin_density.h"
 #include "studies/sweep/job_array.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,4 +189,4 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   return page;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

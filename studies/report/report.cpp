@@ -12,7 +12,7 @@
 #include "studies/figures/draw_or_warn.h"
 #include "studies/sweep/manifest.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 namespace fs = std::filesystem;
 
@@ -95,4 +95,4 @@ WrittenReport write_report(ReportOptions const& options, Backend const& device) 
   return written;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

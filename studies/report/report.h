@@ -10,7 +10,7 @@
 #include "studies/compare/reconstruct.h"
 #include "studies/report/report_page.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Options of a report.
 struct ReportOptions {
@@ -64,4 +64,4 @@ ReportSection provenance_section(SourceFiles const& sources, std::vector<std::st
 /// Converts both frames to 8-bit images of equal grey scale; of large frames, the central part.
 FramePictures frame_pictures(std::string const& folder, std::string const& title);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

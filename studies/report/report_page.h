@@ -8,7 +8,7 @@
 
 #include "studies/drawing/figure.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Blocks of a report, independent of the output format. Texts are plain; the writers escape them.
 struct Paragraph {
@@ -79,4 +79,4 @@ std::string html_page(ReportPage const& page);
 /// Formats the report as Markdown, without interactive elements.
 std::string markdown_page(ReportPage const& page);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

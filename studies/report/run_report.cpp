@@ -16,7 +16,7 @@
 #include "studies/sweep/job_array.h"
 #include "studies/sweep/study_table.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,4 +210,4 @@ ReportPage run_report(ReportOptions const& options) {
   return page;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

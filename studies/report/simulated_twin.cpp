@@ -13,7 +13,7 @@
 #include "studies/sweep/case_runner.h"
 #include "studies/sweep/plan.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 constexpr std::size_t twin_repeats = 2;
@@ -127,4 +127,4 @@ SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& densit
   return twin;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -7,7 +7,7 @@
 #include "studies/case/case.h"
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Simulated repetition of a measurement: the measured density is the medium of the setup, which is rendered,
 /// correlated and compared.
@@ -29,4 +29,4 @@ inline constexpr int most_twin_px = 512;  ///< maximum width and height of the s
 SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& density, double spacing, Vec2d centre,
                             Backend device);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -9,7 +9,7 @@
 #include "studies/report/study_view.h"
 #include "studies/sweep/study_columns.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 namespace {
 
@@ -93,4 +93,4 @@ TextTable cases_table(StudyView const& study) {
   return table;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -10,7 +10,7 @@
 #include "studies/sweep/ranking.h"
 #include "studies/sweep/study_columns.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
   for (StudyRow const& row : table.rows) {
@@ -148,4 +148,4 @@ std::string uncertainty_finding(StudyView const& study) {
       100 * quantile(coverage, 0.5), 100 * quantile(coverage, 0), 100 * quantile(coverage, 1));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

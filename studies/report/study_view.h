@@ -10,7 +10,7 @@
 #include "studies/report/report_page.h"
 #include "studies/sweep/study_table.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Fraction of the errors against window-averaged truth that are within their estimated uncertainty.
 inline constexpr char const* coverage_measure = "uncertainty.window_truth.coverage_1";
@@ -69,4 +69,4 @@ std::string strongest_axis(StudyView const& study);
 /// Describes how well the estimated uncertainties cover the errors; empty if there are no uncertainties.
 std::string uncertainty_finding(StudyView const& study);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -7,7 +7,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 namespace {
 
 double border_mean(Image<double> const& image) {
@@ -63,4 +63,4 @@ Image<double> compute_twin_density(std::vector<Vec2d> const& gradient, int colum
   return density;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

@@ -5,7 +5,7 @@
 #include "render/base/image.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline report {
 
 /// Integrates measured gradients to the density of a simulated twin, which requires a value at every node and no
 /// reference region. The largest connected region of vectors is integrated with equal weights
@@ -18,4 +18,4 @@ namespace gladstone {
 /// @pre at least 2 columns and 2 rows
 Image<double> compute_twin_density(std::vector<Vec2d> const& gradient, int columns, int rows, double spacing);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline report

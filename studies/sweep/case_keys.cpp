@@ -4,7 +4,7 @@
 
 #include "render/setup/setup_node.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 void remove(SetupNode& table, std::string const& key) {
@@ -52,4 +52,4 @@ CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> c
   return keys;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -5,7 +5,7 @@
 
 #include "studies/case/case.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Texts that identify the parts of a case that can be shared: equal texts imply bitwise equal parts.
 struct CaseKeys {
@@ -24,4 +24,4 @@ enum class RepeatSeeds { count, left_out };
 CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs,
                    RepeatSeeds seeds = RepeatSeeds::count);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

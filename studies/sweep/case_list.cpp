@@ -9,7 +9,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 std::optional<std::size_t> whole_number(std::string_view text) {
@@ -54,4 +54,4 @@ std::vector<std::size_t> parse_case_list(std::string const& text, std::size_t co
   return cases;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

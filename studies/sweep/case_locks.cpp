@@ -13,7 +13,7 @@
 #include "render/files/file_lock.h"
 #include "studies/sweep/manifest.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 [[noreturn]] void no_locks(std::string const& path, int error) {
@@ -78,4 +78,4 @@ bool CaseLocks::held_from(std::size_t first, std::size_t count) const {
   return error == EAGAIN;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Locks on cases, one per case, held by the processes that compute them: byte INDEX of the file RUN/claims is locked
 /// (file_lock.h) while a process works on case INDEX.
@@ -40,4 +40,4 @@ class CaseLocks {
   int file_ = -1;  ///< descriptor of the file; -1: the file does not exist and Use is `look`
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -10,7 +10,7 @@
 #include "studies/compare/comparison_kind.h"
 #include "studies/compare/reconstruct.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 void flatten(nlohmann::ordered_json const& json, std::string const& path,
@@ -70,4 +70,4 @@ void add_rendering(PreparedCase const& prepared, RenderedCase const& rendered, R
   warn_of_rendering(result.warnings, prepared, rendered, frames);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

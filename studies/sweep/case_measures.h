@@ -8,7 +8,7 @@
 #include "studies/sweep/case_runner.h"
 
 /// Measures of a case, the columns of a study's table.
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Returns the numbers of errors.json by path ("budget.terms.cone.rms_px"), in its order. Null becomes NaN; arrays and
 /// texts are omitted.
@@ -22,4 +22,4 @@ void add_relative_errors(Setup const& setup, CaseResult& result);
 void add_rendering(PreparedCase const& prepared, RenderedCase const& rendered, RecordedFrames const& frames,
                    CaseResult& result);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -26,7 +26,7 @@
 #include "studies/sweep/case_measures.h"
 #include "studies/sweep/lru_cache.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -250,4 +250,4 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   folder->commit();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

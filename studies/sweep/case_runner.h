@@ -8,7 +8,7 @@
 #include "studies/compare/compare.h"
 #include "studies/sweep/results.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Reuse of intermediate results from earlier cases. `identical` shares only what is identical. `over_repeats` also
 /// shares, between cases that differ only in the random dots and rays, the planned step and number of rays and the
@@ -63,4 +63,4 @@ class CaseRunner {
   std::unique_ptr<Shared> shared_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -18,7 +18,7 @@
 #include "render/files/text_file.h"
 #include "studies/sweep/study_points.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 /// Number of cases from which the table is written directly to the disk. Smaller ones, of some megabytes, are prepared
@@ -120,4 +120,4 @@ StudyTable collect_study(std::string const& run) {
   return table;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -7,7 +7,7 @@
 #include "studies/sweep/study_columns.h"
 #include "studies/sweep/study_table.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Writes a table as CSV, row by row. Numbers are written so that they are read back to the same double; texts are
 /// quoted if necessary.
@@ -30,4 +30,4 @@ void write_study_h5(std::string const& path, StudyTable const& table, std::strin
 ///         meantime
 StudyTable collect_study(std::string const& run);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -23,7 +23,7 @@
 #include "studies/sweep/run.h"
 #include "studies/sweep/study_columns.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -246,4 +246,4 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path, Rend
   return {kept.cases.size(), kept.without};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

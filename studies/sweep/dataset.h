@@ -5,7 +5,7 @@
 
 #include "render/scene/renderer.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Numbers of packed and omitted cases.
 struct PackedDataset {
@@ -24,4 +24,4 @@ void refuse_files_of_study(std::string const& run, std::string const& path);
 ///         has changed; OutputError
 PackedDataset pack_dataset(std::string const& run, std::string const& path, Renderer& renderer);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

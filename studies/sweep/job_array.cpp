@@ -10,7 +10,7 @@
 #include "render/base/error.h"
 #include "studies/sweep/case_list.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 constexpr char const* script_text = R"(#!/bin/sh
@@ -93,4 +93,4 @@ JobArray make_job_array(std::string const& program, std::string const& run, std:
   return array;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Options of a Slurm job array that computes the missing cases of a study. Texts are passed to sbatch unchanged.
 struct SlurmOptions {
@@ -43,4 +43,4 @@ std::string shell_word(std::string const& text);
 JobArray make_job_array(std::string const& program, std::string const& run, std::vector<std::size_t> const& cases,
                         SlurmOptions const& options, std::size_t most);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

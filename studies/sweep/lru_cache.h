@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Least-recently-used cache of values by a text key, with limits on the number of entries and on their size in bytes.
 template <class Value>
@@ -52,4 +52,4 @@ class LruCache {
   std::list<Entry> entries_;  ///< most recently used first
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

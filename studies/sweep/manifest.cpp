@@ -13,7 +13,7 @@
 #include "render/base/error.h"
 #include "render/files/content_hash.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -229,4 +229,4 @@ Manifest read_manifest(std::string const& run) {
   return Manifest(path);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -10,7 +10,7 @@
 
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Value of a study's axis in a case.
 struct ParameterValue {
@@ -94,4 +94,4 @@ class Manifest {
 /// Opens RUN/manifest.jsonl. @throws DataError as Manifest, and if the file does not exist
 Manifest read_manifest(std::string const& run);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

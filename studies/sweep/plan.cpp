@@ -22,7 +22,7 @@
 #include "studies/sweep/case_locks.h"
 #include "studies/sweep/results.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ PlanOutcome write_plan(std::string const& run, StudyPlan const& plan) {
   return planned;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

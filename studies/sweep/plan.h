@@ -4,7 +4,7 @@
 
 #include "studies/sweep/study_plan.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Checks whether a study can be planned into RUN.
 /// @throws OutputError if RUN contains something other than a study, cannot be written, or the plan would overwrite one
@@ -22,4 +22,4 @@ enum class PlanOutcome { fresh, unchanged, replaced };
 ///         results in RUN are of another version, or an input cannot be read
 PlanOutcome write_plan(std::string const& run, StudyPlan const& plan);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

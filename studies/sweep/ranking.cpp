@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 constexpr std::size_t points_in_text = 3;
@@ -95,4 +95,4 @@ nlohmann::ordered_json ranking_json(StudyTable const& table, std::vector<StudyRa
   return json;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -6,7 +6,7 @@
 
 #include "studies/sweep/study_table.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// A point of a study in a ranking.
 struct RankedPoint {
@@ -37,4 +37,4 @@ std::string ranking_text(StudyTable const& table, std::vector<StudyRanking> cons
 /// Returns an array of {measure, meaning, points: [{case, value}]}, with all points.
 nlohmann::ordered_json ranking_json(StudyTable const& table, std::vector<StudyRanking> const& rankings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

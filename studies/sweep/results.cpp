@@ -24,7 +24,7 @@
 #include "studies/case/version_text.h"
 #include "studies/case/warning_json.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -256,4 +256,4 @@ void write_result(std::string const& run, CaseResult const& result) {
   if (error != 0) cannot_be_written(path.string(), error);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

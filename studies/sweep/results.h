@@ -9,7 +9,7 @@
 #include "studies/sweep/manifest.h"
 #include "studies/sweep/vector_errors.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Status of a case.
 enum class CaseStatus { ok, failed, missing };
@@ -75,4 +75,4 @@ void write_result(std::string const& run, CaseResult const& result);
 /// Removes the temporary files of processes that were killed while writing results.
 void remove_abandoned_results(std::string const& run);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -14,7 +14,7 @@
 #include "studies/sweep/case_list.h"
 #include "studies/sweep/case_locks.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -176,4 +176,4 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -7,7 +7,7 @@
 
 #include "studies/sweep/case_runner.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Selection of the cases that a run computes, and options of their computation.
 struct RunSelection {
@@ -81,4 +81,4 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
                RunSelection const& selection, CaseComputation const& compute, std::size_t first,
                std::function<void(std::size_t index, CaseEvent event)> const& tell);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -28,7 +28,7 @@
 
 extern char** environ;
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -236,4 +236,4 @@ std::string last_log_message(JobArray const& array, std::string const& job, std:
   return slurms_own.empty() ? last : slurms_own;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

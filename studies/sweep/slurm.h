@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "studies/sweep/job_array.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Error of a Slurm command, which --slurm requires: not installed, or the job was rejected; contains Slurm's message.
 class SlurmError : public Error {
@@ -47,4 +47,4 @@ JobEnd wait_for_job(std::string const& job, CountRemaining const& remaining);
 /// error: *** JOB 12 ON node3 CANCELLED ... DUE TO TIME LIMIT ***". Empty if the log does not exist.
 std::string last_log_message(JobArray const& array, std::string const& job, std::size_t task);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 constexpr std::size_t most_named = 20;
@@ -57,4 +57,4 @@ std::string state_text(std::string const& run, Manifest const& cases, RunState c
   return text + and_more(state.missing.size());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 /// Rounds to twelve digits, so that values of a range are short decimals: 0.1 instead of 0.30000000000000004 - 0.2.
@@ -53,4 +53,4 @@ bool surely_tells_values_apart(AxisPlan::Range const& range) {
   return std::abs(range.last - range.first) > 2e-11 * steps * std::max(std::abs(range.first), std::abs(range.last));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

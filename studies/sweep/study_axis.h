@@ -8,7 +8,7 @@
 #include "render/setup/setup_node.h"
 #include "studies/sweep/manifest.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Value of an axis: its label in tables, and the corresponding node of the setup.
 struct AxisValue {
@@ -42,4 +42,4 @@ struct AxisPlan {
 /// at most 1e-11.
 bool surely_tells_values_apart(AxisPlan::Range const& range);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

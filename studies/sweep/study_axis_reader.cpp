@@ -13,7 +13,7 @@
 #include "render/files/text_file.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 using Kind = SetupNode::Kind;
@@ -178,4 +178,4 @@ AxisPlan read_study_axis(std::string const& key, SetupNode const& node,
   return AxisReader(source, mode, problem).read(key, node);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

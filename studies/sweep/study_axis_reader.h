@@ -6,7 +6,7 @@
 
 #include "studies/sweep/study_file.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Receives a problem of a study file and its position in the file.
 using ReportProblem = std::function<void(SetupPlace const& place, std::string message)>;
@@ -19,4 +19,4 @@ AxisPlan read_study_axis(std::string const& key, SetupNode const& node,
                          std::shared_ptr<SetupSource const> const& source, StudyMode mode,
                          ReportProblem const& problem);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

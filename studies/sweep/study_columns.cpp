@@ -5,7 +5,7 @@
 
 #include "studies/sweep/unit_ending.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 std::string description_of(std::string const& measure) {
@@ -142,4 +142,4 @@ void write_columns(Hdf5Writer& file, Hdf5Axes& axes, std::string const& group, s
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

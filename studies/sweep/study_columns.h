@@ -8,7 +8,7 @@
 #include "render/files/hdf5_file.h"
 #include "studies/sweep/study_table.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Column of a study's table.
 struct StudyColumn {
@@ -37,4 +37,4 @@ std::vector<StudyColumn> point_columns(StudyTable const& points);
 void write_columns(Hdf5Writer& file, Hdf5Axes& axes, std::string const& group, std::string const& row_name,
                    StudyTable const& table, std::vector<StudyColumn> const& columns);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -13,7 +13,7 @@
 #include "render/setup/setup_table.h"
 #include "studies/sweep/study_axis_reader.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 /// Reads a study file and collects its problems with their positions.
@@ -221,4 +221,4 @@ StudyFile read_study(std::string const& path) {
   return StudyReader(path, std::move(text)).read();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -6,7 +6,7 @@
 
 #include "studies/sweep/study_axis.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 enum class StudyMode { grid, zip, sobol };
 
@@ -32,4 +32,4 @@ inline constexpr std::size_t most_cases = 1'000'000;
 /// @throws SetupError with all problems together, at file:line:column
 StudyFile read_study(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

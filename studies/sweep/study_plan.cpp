@@ -20,7 +20,7 @@
 #include "studies/case/correlation_setup.h"
 #include "studies/case/sequence_pair.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -277,4 +277,4 @@ ManifestCase StudyPlan::operator[](std::size_t index) const {
 
 std::string StudyPlan::line(std::size_t index) const { return manifest_line(without_hash(index)); }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -8,7 +8,7 @@
 #include "studies/sweep/manifest.h"
 #include "studies/sweep/study_file.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// All cases of a study, generated on access. The order has repeats outermost and, in a grid, the last axis fastest, so
 /// that neighbouring cases share most intermediate results. The seeds of target, pupil and noise depend only on the
@@ -47,4 +47,4 @@ class StudyPlan {
 /// Plans a study. @throws as StudyPlan::StudyPlan
 inline StudyPlan plan_study(StudyFile study, std::string device) { return {std::move(study), std::move(device)}; }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -4,7 +4,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 struct SplitNames {
@@ -58,4 +58,4 @@ StudyTable study_points(StudyTable const& cases) {
   return table;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

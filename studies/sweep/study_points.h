@@ -2,7 +2,7 @@
 
 #include "studies/sweep/study_table.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Computes the table of a study's points, one row per point: statistics over the repeats. A row has the index of the
 /// point's first case, and status ok if at least one repeat is finished (otherwise the status of the first case).
@@ -19,4 +19,4 @@ namespace gladstone {
 /// @pre a point of the study has more than one repeat
 StudyTable study_points(StudyTable const& cases);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 /// Collects the distinct values of an axis in order of first appearance.
@@ -166,4 +166,4 @@ StudyTable read_study_table(std::string const& run) {
   return table;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

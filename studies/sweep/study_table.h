@@ -10,7 +10,7 @@
 #include "render/base/warning.h"
 #include "studies/sweep/results.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Axis of a study: a key path of the setup and its distinct values, in the study's order.
 struct StudyAxis {
@@ -71,4 +71,4 @@ struct StudyTable {
 /// @throws DataError if RUN has no manifest or a damaged one
 StudyTable read_study_table(std::string const& run);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

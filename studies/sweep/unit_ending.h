@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Unit suffix of a name and the unit that it denotes: "_mm", "mm". Names without suffix have an empty ending.
 struct UnitEnding {
@@ -32,4 +32,4 @@ constexpr std::optional<UnitEnding> unit_ending(std::string_view name) {
   return std::nullopt;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -5,7 +5,7 @@
 
 #include "render/base/not_a_number.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 double rounded(double error_px) { return std::round(error_px / vector_unit_px) * vector_unit_px; }
@@ -91,4 +91,4 @@ MeanAndSpread mean_and_spread(std::span<double const> values) {
   return {mean, count < 2 ? not_a_number : std::sqrt(squares / static_cast<double>(count - 1))};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

@@ -7,7 +7,7 @@
 
 #include "studies/compare/compare.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Errors of one kind at individual vectors of a case, stored so that repeats can be compared vector by vector.
 struct VectorErrors {
@@ -49,4 +49,4 @@ struct MeanAndSpread {
 };
 MeanAndSpread mean_and_spread(std::span<double const> values);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

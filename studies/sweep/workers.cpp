@@ -17,7 +17,7 @@
 #include "render/base/interrupt.h"
 #include "render/files/stop_point.h"
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 namespace {
 
 constexpr char const* executable = "/proc/self/exe";
@@ -139,4 +139,4 @@ std::vector<WorkerEnd> run_workers(std::vector<std::vector<std::string>> const& 
   return ends;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

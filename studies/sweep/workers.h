@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline sweep {
 
 /// Final state of a worker process.
 struct WorkerEnd {
@@ -33,4 +33,4 @@ std::vector<WorkerEnd> run_workers(std::vector<std::vector<std::string>> const& 
                                    std::vector<std::string> const& environment, std::function<void()> const& finished,
                                    std::function<bool(WorkerEnd const&)> const& restart);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline sweep

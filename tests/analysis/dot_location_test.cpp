@@ -11,7 +11,7 @@
 #include "tests/analysis/synthetic_dots.h"
 #include "tests/support/poisson_variate.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 using test::SyntheticDot;
@@ -297,4 +297,4 @@ TEST(DotLocation, DoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -11,7 +11,7 @@
 #include "tests/analysis/synthetic_dots.h"
 #include "tests/support/expect_error.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr double side = 400;
@@ -219,4 +219,4 @@ TEST(DotTracking, StatesUncertaintyAndStatusOfEveryMatch) {
 }
 
 }  // namespace
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -9,7 +9,7 @@
 #include "analysis/tracking/gaussian_dot.h"
 #include "tests/analysis/synthetic_dots.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 /// Pixels of dots with a profile at 25 pixel phases, with normal noise relative to the flux. Their second moment is
@@ -155,4 +155,4 @@ TEST(DotProfile, LocatesDiscsAccurately) {
 }
 
 }  // namespace
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -5,7 +5,7 @@
 #include "analysis/tracking/outlier_test.h"
 #include "tests/analysis/synthetic_dots.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 /// Vectors at random places with values of a field and noise.
@@ -95,4 +95,4 @@ TEST(OutlierTest, FindsWrongVectorsAndNoOthers) {
 }
 
 }  // namespace
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

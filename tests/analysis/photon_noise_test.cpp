@@ -6,7 +6,7 @@
 
 #include "render/base/random_variates.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 /// Squared normal errors with the variance n0^2 + g L + m^2 F^2 on pixels with 2 to 50 % of fluxes F from 10 to 10^4
@@ -45,4 +45,4 @@ TEST(PhotonNoise, IsZeroWithoutShotNoise) {
 }
 
 }  // namespace
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

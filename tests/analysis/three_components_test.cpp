@@ -97,7 +97,7 @@ class ThreeComponents : public FolderFixture {
 
 TEST_F(ThreeComponents, TablesComeBack) {
   for (std::string const name : {"w.csv", "w.dat"}) {
-    detail::TextTable const table = detail::read_text_table(write(name));
+    TextTable const table = read_text_table(write(name));
     EXPECT_EQ(table.names.size(), name == "w.dat" ? 13u : 12u) << name << ": Tecplot marks unknown values";
     for (auto const& [column, values] : columns())
       expect_equal(table.column({column}), values, name + ' ' + column, name == "w.dat" ? 0.0 : nan);

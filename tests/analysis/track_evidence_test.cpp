@@ -10,7 +10,7 @@
 #include "analysis/tracking/dot_tracking.h"
 #include "tests/analysis/synthetic_dots.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 // Positions x, x + v, x + 2 v + c, x + 3 v + 3 c of constant acceleration c are extrapolated exactly; a third
@@ -205,4 +205,4 @@ TEST(LocatedFrames, RemembersTheLastFrames) {
 }
 
 }  // namespace
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 using Numbers = std::vector<std::int64_t>;
@@ -47,4 +47,4 @@ TEST(TrackNumbers, AreThoseOfTheDotsOfACommonReference) {
 }
 
 }  // namespace
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

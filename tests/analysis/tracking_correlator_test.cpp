@@ -7,7 +7,7 @@
 #include "analysis/tracking/dot_tracking.h"
 #include "tests/analysis/synthetic_dots.h"
 
-namespace gladstone::tracking {
+namespace gladstone::inline tracking {
 namespace {
 
 constexpr int frame_px = 256;
@@ -130,4 +130,4 @@ TEST(TrackingCorrelator, FindsNoDisplacementOfUnrelatedFrames) {
 }
 
 }  // namespace
-}  // namespace gladstone::tracking
+}  // namespace gladstone::inline tracking

@@ -144,7 +144,7 @@ DisplacementField complete_grid() {
 
 /// Compares quantities bit by bit; every NaN equals every other one.
 void expect_equal_columns(DisplacementField const& a, DisplacementField const& b, std::string const& ending) {
-  auto const expected = detail::vector_columns(a), found = detail::vector_columns(b);
+  auto const expected = vector_columns(a), found = vector_columns(b);
   for (std::size_t k = 0; k < expected.size(); ++k) {
     ASSERT_EQ(found[k].values.size(), expected[k].values.size()) << ending;
     for (std::size_t i = 0; i < expected[k].values.size(); ++i) {

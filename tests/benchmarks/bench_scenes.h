@@ -136,7 +136,7 @@ inline PlannedScene points_scene(Setup setup, double dots_per_window = 1) {
 
 /// Returns straight rays from every `every`-th dot of a scene to the pupil.
 inline std::vector<Ray<double>> rays_of_dots(PlannedScene const& scene, std::size_t every, int rays_a_dot) {
-  FocusedSetupView const bench = focused_dots(scene, scene.plan).value().bench();
+  FocusedSetupView const bench = build_focused_dots(scene, scene.plan).value().bench();
   BundleView choice;
   choice.scrambling_bits = scrambling_bits(static_cast<std::uint64_t>(rays_a_dot));
   std::vector<Ray<double>> rays;

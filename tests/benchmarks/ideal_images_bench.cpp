@@ -18,7 +18,7 @@ enum class Record { no, yes };
 
 Rendering render_pair(Setup const& setup) {
   PlannedScene scene(build_scene(setup));
-  if (auto const ideal = ideal_images(scene);
+  if (auto const ideal = build_ideal_images(scene);
       ideal && setup.piv->particles.scattering == ParticleScattering::gaussian) {
     return render_ideal_images(*ideal, scene.particles, ParticleLight::scattered, RenderImages::in_place);
   }

@@ -94,7 +94,7 @@ void trace_volume(benchmark::State& state) {
   PlannedScene const scene = volume_scene(64, 32, 64);
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::vector<Ray<double>> const rays = rays_of_dots(scene, 7, 1);
-  TracingOptions<double> const tracing = focused_dots(scene, scene.plan).value().bench().tracing;
+  TracingOptions<double> const tracing = build_focused_dots(scene, scene.plan).value().bench().tracing;
   std::size_t next = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(trace_medium(volume, tracing, rays[next]));
@@ -111,7 +111,7 @@ void trace_volume_together(benchmark::State& state) {
   PlannedScene const scene = volume_scene(64, 32, 64);
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::vector<Ray<double>> const all = rays_of_dots(scene, 7, N);
-  TracingOptions<double> const tracing = focused_dots(scene, scene.plan).value().bench().tracing;
+  TracingOptions<double> const tracing = build_focused_dots(scene, scene.plan).value().bench().tracing;
   std::size_t bundle = 0;
   for (auto _ : state) {
     Ray<double> rays[N];

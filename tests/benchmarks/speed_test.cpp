@@ -92,7 +92,7 @@ TEST(Speed, OfTheCorrelationOfWindows) {
 TEST(Speed, OfParticleImagesByFormula) {
   auto const setup = test::pair_setup(ParticleScattering::gaussian, 512, 512);
   PlannedScene const scene(build_scene(setup));
-  auto const ideal = ideal_images(scene);
+  auto const ideal = build_ideal_images(scene);
   ASSERT_TRUE(ideal);
   std::vector<Vec2d> places;
   for (auto const& pulse : scene.particles.place) {

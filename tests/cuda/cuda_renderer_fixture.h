@@ -92,7 +92,7 @@ class OnBothDevices : public testing::Test {
   /// level, counts exactly. Scenes that the fast renderer does not support are compared by the test of the general
   /// renderer.
   void expect_as_on_cpu(PlannedScene scene) {
-    if (std::is_same_v<Method, FocusedDotsMethod> && !focused_dots(scene, scene.plan)) {
+    if (std::is_same_v<Method, FocusedDotsMethod> && !build_focused_dots(scene, scene.plan)) {
       GTEST_SKIP() << "the fast renderer does not support this scene; the test of the general renderer compares it";
     }
     Rendering const cpu = on_cpu_.render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::yes),

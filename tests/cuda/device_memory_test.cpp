@@ -127,10 +127,10 @@ TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
 TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   PlannedScene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
   few.dots.centre.resize(4);
-  FocusedDots const dots = focused_dots(scene, scene.plan).value();
+  FocusedDots const dots = build_focused_dots(scene, scene.plan).value();
   double const default_aim_distance = DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2;
   DeflectionTableLayout const plan(dots, scene.dots, default_aim_distance);
-  DeflectionTableLayout const of_few(focused_dots(few, few.plan).value(), few.dots, default_aim_distance);
+  DeflectionTableLayout const of_few(build_focused_dots(few, few.plan).value(), few.dots, default_aim_distance);
   ASSERT_TRUE(plan.wanted() && of_few.wanted());
   // uploads the field, which remains on the device, and a table, which is released before the next one is allocated
   render(few);

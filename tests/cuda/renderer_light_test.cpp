@@ -27,7 +27,7 @@ class CudaLightTest : public CudaRendererTest {
 /// Returns the number of dots in caustics: the edge of the stop, as seen through the table, is crossed more than once
 /// in some direction.
 int dots_in_caustics(PlannedScene const& scene) {
-  FocusedDots const dots = focused_dots(scene, scene.plan).value();
+  FocusedDots const dots = build_focused_dots(scene, scene.plan).value();
   DeflectionMap const map(dots, DeflectionTableLayout(dots, scene.dots, scene.imaging.entrance_pupil));
   OwnedDotModel const owned(dots, scene.dots, map.table(), false);
   DotModel const& model = owned.model;

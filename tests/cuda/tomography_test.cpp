@@ -8,7 +8,7 @@
 #include "render/base/not_a_number.h"
 #include "tests/analysis/tomography/phantom_views.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 constexpr double width = 20e-3, radius = 4e-3;
@@ -106,4 +106,4 @@ TEST_F(CudaTomography, IsTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -116,7 +116,7 @@ TEST(ConeRule, IntegratesALensInClosedForm) {
   PlannedScene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
   scene.medium.finest = 1e-4;
   LensTable const lens(d, b);
-  OwnedDotModel const owned(focused_dots(scene, scene.plan).value(), scene.dots, lens.table, false);
+  OwnedDotModel const owned(build_focused_dots(scene, scene.plan).value(), scene.dots, lens.table, false);
   CorrectedCone const cone = lens.cone();
   ConeRule const& rule = owned.model.cone;
   std::vector<double> rims;

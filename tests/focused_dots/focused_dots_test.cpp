@@ -53,7 +53,7 @@ TEST(Memory, OfATableIsKnownFromItsSetup) {
       setup.render.rays_per_dot.reset();
       if (fineness == 1) setup.render.rays_per_dot = 32;
       scene.plan.fineness = fineness;
-      DeflectionTableLayout const plan(focused_dots(scene, scene.plan).value(), scene.dots, 0);
+      DeflectionTableLayout const plan(build_focused_dots(scene, scene.plan).value(), scene.dots, 0);
       ASSERT_TRUE(plan.wanted());
       EXPECT_NEAR(table_bytes_needed(setup) / static_cast<double>(plan.table.bytes()), 1, 0.1) << fineness;
     }

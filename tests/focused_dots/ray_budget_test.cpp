@@ -15,7 +15,7 @@ namespace {
 /// Plans the rays of a scene with rays_per_dot = "auto", by the fast renderer if it supports the scene.
 RenderPlan plan_rays_anew(PlannedScene& scene) {
   scene.setup.render.rays_per_dot.reset();
-  auto const dots = focused_dots(scene, scene.plan);
+  auto const dots = build_focused_dots(scene, scene.plan);
   return scene.plan = dots ? plan_rays_by_table(*dots) : plan_rays_by_tracing(scene, scene.plan);
 }
 
@@ -81,7 +81,7 @@ TEST(PlanRays, KeepsAGivenNumber) {
   auto setup = table1_setup(64);
   PlannedScene const scene = scene_with_dots(setup, {{30, 30}}, 77);
   for (RenderPlan const& plan :
-       {plan_rays_by_table(focused_dots(scene, scene.plan).value()), plan_rays_by_tracing(scene, scene.plan)}) {
+       {plan_rays_by_table(build_focused_dots(scene, scene.plan).value()), plan_rays_by_tracing(scene, scene.plan)}) {
     EXPECT_EQ(plan.rays, 77u);
     EXPECT_FALSE(plan.adaptive_criteria);
     EXPECT_FALSE(plan.table_error) << "nothing was measured";
@@ -105,7 +105,7 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   PlannedScene scene = scene_with_dots(setup, lattice(64, 4, 14), 512);
-  TableError const usual = measure_table_error(focused_dots(scene, scene.plan).value());
+  TableError const usual = measure_table_error(build_focused_dots(scene, scene.plan).value());
   EXPECT_EQ(usual.fineness, 1);
   RenderPlan const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.fineness, 2);
@@ -222,7 +222,7 @@ TEST(MeasureTableError, TellsHowFarImagesAreOff) {
     auto setup = table1_setup(64);
     setup.medium.field = dns_plane(instant);
     PlannedScene const scene = scene_with_dots(setup, lattice(64, 3, 20), 128);
-    TableError const told = measure_table_error(focused_dots(scene, scene.plan).value());
+    TableError const told = measure_table_error(build_focused_dots(scene, scene.plan).value());
     double const found = table_is_off(scene);
     EXPECT_LT(told.image_levels, 2 * found) << instant << " found " << found;
     EXPECT_GT(std::hypot(told.image_levels, 0.4), found / 2) << instant << " found " << found;
@@ -235,7 +235,7 @@ TEST(MeasureTableError, TellsWhatItCanResolve) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(20, 10);
   PlannedScene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
-  TableError const told = measure_table_error(focused_dots(scene, scene.plan).value());
+  TableError const told = measure_table_error(build_focused_dots(scene, scene.plan).value());
   EXPECT_GT(told.truth_resolution_px, 0);
   EXPECT_LT(told.truth_resolution_px, 1e-4);
   EXPECT_GT(told.image_resolution_levels, 0);
@@ -250,7 +250,8 @@ TEST(MeasureTableError, FollowsDotsThatMoveFar) {
     auto setup = table1_setup(64);
     setup.medium.field = uniform_gradient(gradient, 10);
     PlannedScene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
-    told[gradient > 400 ? 1 : 0] = measure_table_error(focused_dots(scene, scene.plan).value()).image_resolution_levels;
+    told[gradient > 400 ? 1 : 0] =
+        measure_table_error(build_focused_dots(scene, scene.plan).value()).image_resolution_levels;
   }
   EXPECT_GT(told[0], 0);
   EXPECT_GT(told[1], told[0] / 2);

@@ -25,7 +25,7 @@ struct Coverage {
 Coverage coverage_of(PlannedScene const& scene, std::uint64_t many_rays, int seeds) {
   FocusedDotsRenderer fast;
   RaysRenderer general;
-  Renderer& renderer = focused_dots(scene, scene.plan) ? static_cast<Renderer&>(fast) : general;
+  Renderer& renderer = build_focused_dots(scene, scene.plan) ? static_cast<Renderer&>(fast) : general;
   auto const truth_of = [&](std::uint64_t rays, std::uint64_t seed) {
     PlannedScene other = scene;
     other.setup.render.rays_per_dot = other.plan.rays = rays;

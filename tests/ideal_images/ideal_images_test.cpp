@@ -41,7 +41,7 @@ Setup piv_setup(ParticleScattering scattering = ParticleScattering::gaussian) {
 }
 
 Rendering by_formula(PlannedScene const& scene, RenderImages images = RenderImages::yes) {
-  return render_ideal_images(ideal_images(scene).value(), scene.particles, ParticleLight::scattered, images);
+  return render_ideal_images(build_ideal_images(scene).value(), scene.particles, ParticleLight::scattered, images);
 }
 
 // The image is a Gaussian of the matched sigma about z_i / p (X, -Y) / (z_a - Z), integrated over pixels as differences
@@ -139,10 +139,11 @@ TEST(IdealImages, SayWhatBlurTheyLeaveOut) {
   for (auto& places : scene.particles.place) {
     for (Vec3d& place : places) place.z = 0;
   }
-  EXPECT_EQ(ideal_images(scene)->largest_blur_px(scene.particles), 0);
+  EXPECT_EQ(build_ideal_images(scene)->largest_blur_px(scene.particles), 0);
   scene.particles.place[0][0].z = 0.5 * mm;
   scene.particles.photons[0][0] = 1;
-  EXPECT_NEAR(ideal_images(scene)->largest_blur_px(scene.particles), 105.0 / 645 * 6.5625 * 0.5 / 749.5 / 5e-3, 1e-9);
+  EXPECT_NEAR(build_ideal_images(scene)->largest_blur_px(scene.particles), 105.0 / 645 * 6.5625 * 0.5 / 749.5 / 5e-3,
+              1e-9);
 }
 
 /// Light of one particle on the axis, in the position z, by the formula and by 4096 rays, in multiples of all its
@@ -162,7 +163,7 @@ struct OneParticle {
       scene.particles.photons[pulse] = {1e13};
     }
     scene.particles.diameter = {1e-6};
-    auto const ideal = ideal_images(scene).value();
+    auto const ideal = build_ideal_images(scene).value();
     blur = ideal.blur();
     stated_error = ideal.largest_blur_error(scene.particles);
     Rendering const drawn = by_formula(scene);
@@ -254,14 +255,14 @@ TEST(IdealImages, AreBlurredAsThoseOfRays) {
 // The circle of confusion in front of and behind the plane in focus: M D |z| / (2 (Z - z)), here with M = 105 / 645.
 TEST(IdealImages, WidenByTheCircleOfConfusion) {
   PlannedScene const scene(build_scene(piv_setup(ParticleScattering::lambert)));
-  DefocusBlur const blur = ideal_images(scene)->blur();
+  DefocusBlur const blur = build_ideal_images(scene)->blur();
   for (double const z : {-2 * mm, 0.0, 0.5 * mm}) {
     double const r = 105.0 / 645 * 6.5625 * mm / 2 * std::abs(z) / (750 * mm - z) / 5e-6;
     EXPECT_NEAR(blur.radius(z), r, 1e-12);
     EXPECT_NEAR(blur.width(z), std::sqrt(blur.sigma * blur.sigma + r * r / 4), 1e-12);
   }
   PlannedScene const neglected(build_scene(piv_setup()));
-  EXPECT_EQ(ideal_images(neglected)->blur().width(2 * mm), neglected.spot_sigma_px());
+  EXPECT_EQ(build_ideal_images(neglected)->blur().width(2 * mm), neglected.spot_sigma_px());
 }
 
 TEST(IdealImages, HaveOneDoor) {

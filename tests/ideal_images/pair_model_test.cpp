@@ -60,7 +60,7 @@ TEST(PairModel, MakesTheImagesOfTheScene) {
     double const rounding = mie ? 1e-5 : 1e-13;
     setup.piv->particles.seed = 77;
     PivScene const scene = build_scene(setup);
-    auto const ideal = ideal_images(scene).value();
+    auto const ideal = build_ideal_images(scene).value();
     double brightest = 0;
     std::size_t lit = 0;
     for (std::uint64_t i = 0; i < model.seeded; ++i) {
@@ -93,8 +93,8 @@ TEST(PairModel, PixelsAddUpSharesInOrder) {
     gladstone::Setup setup = small_pair();
     setup.camera.pixel_pitch = pitch;
     PivScene const scene = build_scene(setup);
-    Rendering const drawn =
-        render_ideal_images(ideal_images(scene).value(), scene.particles, ParticleLight::scattered, RenderImages::yes);
+    Rendering const drawn = render_ideal_images(build_ideal_images(scene).value(), scene.particles,
+                                                ParticleLight::scattered, RenderImages::yes);
     GaussianSpot<double> const spot{scene.spot_sigma_px()};
     std::size_t equal = 0;
     for (int row = 0; row < setup.camera.rows; ++row) {

@@ -53,7 +53,7 @@ PlannedScene late_scene(std::uint64_t rays) {
 // table at any number of rays.
 TEST(RaysRenderer, GivesTheTruthAndTheImagesOfFocusedDots) {
   PlannedScene scene = late_scene(65536);
-  ASSERT_TRUE(focused_dots(scene, scene.plan));
+  ASSERT_TRUE(build_focused_dots(scene, scene.plan));
   Rendering const fast = render_all(scene), rays = by_rays(scene);
   for (std::size_t dot = 0; dot < fast.truth.size(); ++dot) {
     Vec2d const off = rays.truth.displacement_px[dot] - fast.truth.displacement_px[dot];

@@ -167,7 +167,7 @@ TEST(PivScene, IsNotOfFocusedDots) {
   gladstone::Setup const setup = read_setup_text(piv_text("number = 20\nscattering = \"lambert\"\n")).setup;
   EXPECT_TRUE(setup.has_closed_form_layout());
   EXPECT_NE(reason_against_focused_dots(setup), "");
-  EXPECT_FALSE(focused_dots(build_scene(setup)));
+  EXPECT_FALSE(build_focused_dots(build_scene(setup)));
 }
 
 TEST(PivScene, RejectsSheetOutsideParticles) {

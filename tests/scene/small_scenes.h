@@ -62,7 +62,7 @@ inline PlannedScene scene_with_dots(Setup const& setup, std::vector<Vec2d> const
 
 /// Renders a scene by the fast renderer, or by the general one if the fast renderer does not support all of its dots.
 inline Rendering render_either(PlannedScene const& scene, RenderImages images, RenderTheory theory) {
-  if (focused_dots(scene, scene.plan)) {
+  if (build_focused_dots(scene, scene.plan)) {
     Rendering rendering = FocusedDotsRenderer().render(scene, scene.plan, scene.dots, images, theory);
     if (rendering.left.empty()) return rendering;
   }

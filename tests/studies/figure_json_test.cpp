@@ -8,7 +8,7 @@
 namespace gladstone {
 namespace {
 
-using namespace figures;
+using namespace plot;
 
 /// A figure with a map, a line with a gap, and labels in an axis with and without a range.
 Figure sample() {

@@ -15,10 +15,10 @@
 namespace gladstone {
 namespace {
 
-using figures::Box;
+using plot::Box;
 
 /// Expects that the labels of a panel are in the page and do not overlap.
-void expect_readable(Figure const& figure, figures::Panel const& panel, std::string const& what) {
+void expect_readable(Figure const& figure, plot::Panel const& panel, std::string const& what) {
   std::vector<PlacedText> const texts = place_labels(figure, panel);
   ASSERT_EQ(texts.size(), panel.labels.size()) << what;
   for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -76,8 +76,8 @@ TEST(FigureTexts, HaveTheFontsOfTheTemplates) {
 TEST(FigureTexts, AreAsWideAsTheyAreDrawn) {
   Figure figure{600, 80};
   figure.add_title("Hamburgefonts: f = 105 mm, Z_D = 250 mm");
-  figure.panels.push_back({.box = {10, 590, 70, 76}, .border = figures::Border::none});
-  figure.panels.front().x.marks = figure.panels.front().y.marks = figures::Axis::Marks::none;
+  figure.panels.push_back({.box = {10, 590, 70, 76}, .border = plot::Border::none});
+  figure.panels.front().x.marks = figure.panels.front().y.marks = plot::Axis::Marks::none;
   std::string const path = (std::filesystem::path(testing::TempDir()) / "gladstone_figure_texts.png").string();
   try {
     draw_figure(figure, path);

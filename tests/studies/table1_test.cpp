@@ -18,7 +18,7 @@ TEST(Table1, IsAsGoodAsItSays) {
   Scene const scene = build_scene(loaded.setup);
   RenderPlan const plan = plan_rendering(scene);
   ASSERT_EQ(plan.rays, 1024u);
-  TableError const error = measure_table_error(focused_dots(scene, plan).value());
+  TableError const error = measure_table_error(build_focused_dots(scene, plan).value());
   EXPECT_LT(error.truth_px, 1e-4);
   EXPECT_LT(error.truth_resolution_px, 1e-4);
   EXPECT_LT(error.image_levels, 0.5);

@@ -1,7 +1,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/lane_correlation.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 void make_difference_plane(LaneCorrelation& work, LanePlane& plane) {
@@ -31,4 +31,4 @@ std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job) {
   return correlate_in_lanes(job, {.make = make_difference_plane, .with_margin = true, .decreases_with_shift = false});
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

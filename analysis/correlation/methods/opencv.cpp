@@ -11,7 +11,7 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 constexpr std::size_t windows_per_chunk = 32;  // even, since windows are transformed in pairs
@@ -157,4 +157,4 @@ std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job) 
   return results;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -4,7 +4,7 @@
 
 #include "analysis/correlation/lane_correlation.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// e^-2 diameter of the particle images whose spectrum weights the phases [px]; value of Eckstein & Vlachos (2009).
 constexpr double robust_phase_diameter_px = 2.8;
@@ -17,4 +17,4 @@ std::vector<float> particle_spectrum(int size);
 /// diameter^2/8.
 void make_robust_phase_plane(LaneCorrelation& work, LanePlane& plane);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -6,7 +6,7 @@
 #include "analysis/correlation/methods/robust_phase.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 std::vector<float> particle_spectrum(int size) {
   std::vector<double> factor;
@@ -44,4 +44,4 @@ std::vector<WindowCorrelation> correlate_rpc(InterrogationJob const& job) {
   return correlate_in_lanes(job, {make_robust_phase_plane});
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

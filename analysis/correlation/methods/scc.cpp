@@ -1,7 +1,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/lane_correlation.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 std::vector<WindowCorrelation> correlate_scc(InterrogationJob const& job) {
   return correlate_in_lanes(job, {[](LaneCorrelation& work, LanePlane& plane) {
@@ -10,4 +10,4 @@ std::vector<WindowCorrelation> correlate_scc(InterrogationJob const& job) {
                             }});
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -1,7 +1,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/lane_correlation.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 void make_filtered_plane(LaneCorrelation& work, LanePlane& plane) {
@@ -32,4 +32,4 @@ std::vector<WindowCorrelation> correlate_spc(InterrogationJob const& job) {
   return correlate_in_lanes(job, {make_filtered_plane});
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

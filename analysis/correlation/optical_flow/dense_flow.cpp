@@ -5,7 +5,7 @@
 
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 constexpr std::size_t rows_at_once = 16;
@@ -93,4 +93,4 @@ GreyImage normalised_frame(GreyImage frame) {
   return frame;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -8,7 +8,7 @@
 
 /// Optical flow: estimates a displacement for every pixel instead of every window. Provided for comparison with
 /// correlation.
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Grey levels in float, row by row; positions outside the image return the nearest border pixel.
 struct GreyImage {
@@ -72,4 +72,4 @@ GreyRange joint_range(GreyImage const& reference, GreyImage const& flow);
 /// @throws DataError if the frames are too small for the method
 DenseFlow dense_inverse_search(GreyImage const& reference, GreyImage const& flow);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -1,7 +1,7 @@
 #include "analysis/correlation/optical_flow/dense_flow.h"
 #include "render/base/parallel.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Weight of the squared gradients of the displacement relative to the squared grey-level residual, for grey levels of
@@ -100,4 +100,4 @@ DenseFlow horn_schunck_flow(GreyImage const& reference, GreyImage const& flow) {
   return d;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -7,7 +7,7 @@
 #include "analysis/correlation/optical_flow/dense_flow.h"
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// RAII guard that restricts OpenCV to one thread, so that the result does not depend on the number of threads: OpenCV
@@ -97,4 +97,4 @@ DenseFlow dense_inverse_search(GreyImage const& reference, GreyImage const& flow
   return d;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -8,7 +8,7 @@
 
 #include "analysis/correlation/standard_correlator.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 namespace {
 
 /// Returns a warning listing the settings that differ from their defaults but have no effect on optical flow.
@@ -118,4 +118,4 @@ std::unique_ptr<Correlator> make_optical_flow_correlator(CorrelationSettings con
   return std::make_unique<OpticalFlowCorrelator>(settings, estimate);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -5,7 +5,7 @@
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/optical_flow/dense_flow.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Creates a correlator by optical flow. Its vectors are the displacements at the centres of the windows that the last
 /// pass of a correlation would have. There are no passes and no validation by neighbours, since the flow is smooth;
@@ -13,4 +13,4 @@ namespace gladstone {
 /// has no contrast or the displacement exceeds settings.max_displacement_px.
 std::unique_ptr<Correlator> make_optical_flow_correlator(CorrelationSettings const& settings, EstimateFlow estimate);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -2,7 +2,7 @@
 
 #include "analysis/correlation/subpixel_fit.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 PeakFit fit_centroid(PeakPatch const& patch) {
   auto const& v = patch.value;
@@ -15,4 +15,4 @@ PeakFit fit_centroid(PeakPatch const& patch) {
   return {centre_of_mass(v[1][0], v[1][2]), centre_of_mass(v[0][1], v[2][1]), fit_gauss3(patch).log_rise};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -7,7 +7,7 @@
 #include "render/base/host_device.h"
 
 /// Fits of Gaussian peaks, for the CPU and the CUDA kernels.
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 /// Implementation of fit_gauss3().
 struct GaussAlongAxes {
@@ -69,4 +69,4 @@ struct GaussOfAnyAxes {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

@@ -3,7 +3,7 @@
 #include "analysis/correlation/subpixel_fit.h"
 #include "analysis/correlation/subpixel_peak.h"
 
-namespace gladstone {
+namespace gladstone::inline correlation {
 
 PeakFit fit_parabola(PeakPatch const& patch) {
   auto const& v = patch.value;
@@ -15,4 +15,4 @@ PeakFit fit_parabola(PeakPatch const& patch) {
   return {x, y, std::log(height / v[1][1])};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline correlation

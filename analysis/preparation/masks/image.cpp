@@ -1,7 +1,7 @@
 #include "analysis/preparation/frame_changes.h"
 #include "analysis/preparation/frame_sized_image.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 FrameChange make_image_mask(std::string const& file) {
   return [file](PreparedFrames& frames) {
@@ -11,4 +11,4 @@ FrameChange make_image_mask(std::string const& file) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

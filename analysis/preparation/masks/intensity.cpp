@@ -3,7 +3,7 @@
 #include "analysis/preparation/frame_changes.h"
 #include "analysis/preparation/grey_levels.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 FrameChange make_intensity_mask(std::optional<double> above_dn, std::optional<double> below_dn, double blur_px) {
   return [above_dn, below_dn, blur_px](PreparedFrames& frames) {
@@ -18,4 +18,4 @@ FrameChange make_intensity_mask(std::optional<double> above_dn, std::optional<do
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

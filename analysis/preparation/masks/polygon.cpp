@@ -4,7 +4,7 @@
 #include "render/base/error.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 namespace {
 
 /// Returns true if a point is inside a polygon: a ray to the right crosses its sides an odd number of times.
@@ -39,4 +39,4 @@ FrameChange make_polygon_mask(std::vector<Vec2d> const& corners) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

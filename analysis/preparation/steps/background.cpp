@@ -8,7 +8,7 @@
 #include "analysis/preparation/sequence_background.h"
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 namespace {
 
 void subtract_background(Image<double> const& background, Image<double>& frame) {
@@ -66,4 +66,4 @@ FrameChange make_background_subtraction(std::string const& statistic, std::vecto
   return [listed](PreparedFrames& prepared) { listed->subtract_from(prepared); };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

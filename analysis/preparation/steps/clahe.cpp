@@ -4,7 +4,7 @@
 #include "analysis/preparation/frame_changes.h"
 #include "analysis/preparation/grey_levels.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 FrameChange make_clahe(int tile_px, double clip_limit) {
   return [tile_px, clip_limit](PreparedFrames& frames) {
@@ -21,4 +21,4 @@ FrameChange make_clahe(int tile_px, double clip_limit) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

@@ -3,7 +3,7 @@
 #include "analysis/preparation/frame_changes.h"
 #include "analysis/preparation/grey_levels.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 FrameChange make_high_pass(double sigma_px) {
   return [sigma_px](PreparedFrames& frames) {
@@ -20,4 +20,4 @@ FrameChange make_high_pass(double sigma_px) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

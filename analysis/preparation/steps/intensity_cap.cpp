@@ -4,7 +4,7 @@
 #include "analysis/preparation/frame_changes.h"
 #include "analysis/preparation/grey_levels.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 FrameChange make_intensity_cap(double deviations) {
   return [deviations](PreparedFrames& frames) {
@@ -22,4 +22,4 @@ FrameChange make_intensity_cap(double deviations) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

@@ -3,7 +3,7 @@
 #include "analysis/preparation/frame_changes.h"
 #include "analysis/preparation/grey_levels.h"
 
-namespace gladstone {
+namespace gladstone::inline preparation {
 
 FrameChange make_min_max(int window_px, double least_contrast) {
   return [window_px, least_contrast](PreparedFrames& frames) {
@@ -24,4 +24,4 @@ FrameChange make_min_max(int window_px, double least_contrast) {
   };
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline preparation

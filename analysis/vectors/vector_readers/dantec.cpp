@@ -2,7 +2,7 @@
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 bool is_dantec(TextTable const& table) {
   return std::any_of(table.preamble.begin(), table.preamble.end(),
@@ -24,4 +24,4 @@ VectorFile read_dantec(TextTable const& table) {
   return file;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -13,7 +13,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/text.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Columns that vectors.h5 and vectors.csv contain in every version of gladstone.
@@ -121,9 +121,9 @@ VectorFile read_gladstone_tecplot(TextTable const& table) {
   return file;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 
 Warnings read_warnings(Hdf5Reader const& file) {
   Warnings warnings;
@@ -139,4 +139,4 @@ Warnings read_warnings(Hdf5Reader const& file) {
   return warnings;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

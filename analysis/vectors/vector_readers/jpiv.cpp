@@ -1,6 +1,6 @@
 #include "analysis/vectors/vector_readers/vector_readers.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 bool is_jpiv(TextTable const& table) { return !table.has_header; }
 
@@ -14,4 +14,4 @@ VectorFile read_jpiv(TextTable const& table) {
   return file;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -3,7 +3,7 @@
 #include "analysis/vectors/vector_readers/own_columns.h"
 #include "analysis/vectors/vector_readers/vector_readers.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Returns the values of a matrix row by row; MATLAB stores it column by column.
@@ -29,4 +29,4 @@ VectorFile read_vector_matlab(std::string const& path) {
   return read_own_columns(columns);
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -11,7 +11,7 @@
 #include "render/base/text.h"
 #include "render/files/text_file.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 DisplacementField plain_vectors(std::vector<double> const& x, std::vector<double> const& y,
                                 std::vector<double> const& u, std::vector<double> const& v) {
@@ -129,4 +129,4 @@ VectorFile read_named_columns(TextTable const& table) {
   return file;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

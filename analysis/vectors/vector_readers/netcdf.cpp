@@ -15,7 +15,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/input_file.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Variable of PIVPy's schema and the column that the variable contains.
@@ -152,4 +152,4 @@ VectorFile read_vector_netcdf(std::string const& path) {
   return file;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -1,6 +1,6 @@
 #include "analysis/vectors/vector_readers/vector_readers.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 bool is_openpiv(TextTable const& table) {
   return table.find({"x"}) && table.find({"y"}) && table.find({"u"}) && table.find({"v"}) &&
@@ -32,4 +32,4 @@ VectorFile read_openpiv(TextTable const& table) {
   return file;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

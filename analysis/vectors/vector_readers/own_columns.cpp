@@ -11,7 +11,7 @@
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "render/base/error.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 constexpr std::array<std::string_view, 14> own_columns{
@@ -99,4 +99,4 @@ VectorFile read_own_columns(OwnColumns const& columns) {
   return {std::move(field), "gladstone", {}, false};
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

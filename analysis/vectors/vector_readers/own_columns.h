@@ -9,7 +9,7 @@
 
 #include "analysis/vectors/vector_file.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Columns of a file that gladstone wrote, identified by their names in vectors.csv and vectors.h5.
 struct OwnColumns {
@@ -26,4 +26,4 @@ bool is_own_column(std::string_view name);
 /// @throws DataError for missing columns, columns of another length than x_px, and numbers that are not codes
 VectorFile read_own_columns(OwnColumns const& columns);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

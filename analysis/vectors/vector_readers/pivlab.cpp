@@ -1,6 +1,6 @@
 #include "analysis/vectors/vector_readers/vector_readers.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 bool is_pivlab(TextTable const& table) {
   bool const announced = !table.preamble.empty() && table.preamble.front().find("PIVlab") != std::string::npos;
@@ -26,4 +26,4 @@ VectorFile read_pivlab(TextTable const& table) {
   return file;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

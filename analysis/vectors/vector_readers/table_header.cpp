@@ -9,7 +9,7 @@
 #include "render/base/text.h"
 #include "render/files/tecplot_zone.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 bool is_unit(std::string_view word) {
@@ -144,4 +144,4 @@ void DeclaredVectors::add(std::string_view line, std::size_t line_number) {
   }
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Column name split into quantity and unit: "U pix[pix]" is the quantity "u" in "pix".
 struct ColumnName {
@@ -57,4 +57,4 @@ class DeclaredVectors {
   bool in_zone_ = false;  ///< true if a line with Tecplot's ZONE has been added
 };
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

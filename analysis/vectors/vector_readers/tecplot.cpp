@@ -4,7 +4,7 @@
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Masks vectors of exactly zero: DaVis writes removed or masked vectors as zeros.
@@ -46,4 +46,4 @@ VectorFile read_tecplot(TextTable const& table) {
   return file;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -7,7 +7,7 @@
 
 #include "render/base/text.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 char detect_separator(std::string_view line) {
   for (char const candidate : {';', '\t', ','}) {
@@ -86,4 +86,4 @@ bool has_ambiguous_commas(std::string_view line, std::size_t columns) {
          std::all_of(fields.begin(), fields.end(), [](std::string_view f) { return number(f).has_value(); });
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

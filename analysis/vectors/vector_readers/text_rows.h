@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Characters that separate words.
 inline constexpr std::string_view blanks = " \t\r";
@@ -40,4 +40,4 @@ RowFormat row_format(std::string_view line, std::size_t columns);
 /// "11,5,2,25" for two columns.
 bool has_ambiguous_commas(std::string_view line, std::size_t columns);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

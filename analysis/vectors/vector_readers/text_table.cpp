@@ -10,7 +10,7 @@
 #include "render/files/tecplot_zone.h"
 #include "render/files/text_file.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 constexpr std::size_t most_lines_before_numbers = 1000;
@@ -209,4 +209,4 @@ std::vector<double> const& TextTable::column(std::initializer_list<std::string_v
 
 TextTable read_text_table(std::string const& path) { return TableReader(path).read(); }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

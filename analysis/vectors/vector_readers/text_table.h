@@ -10,7 +10,7 @@
 #include "analysis/vectors/vector_readers/table_header.h"
 #include "render/base/warning.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Text file of numbers in columns, common to all readers of foreign vectors.
 struct TextTable {
@@ -51,4 +51,4 @@ struct TextTable {
 ///         that is not a number, values in cells of Tecplot, or 3D vectors of DaVis
 TextTable read_text_table(std::string const& path);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

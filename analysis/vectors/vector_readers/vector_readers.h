@@ -7,7 +7,7 @@
 #include "analysis/vectors/vector_file.h"
 #include "analysis/vectors/vector_readers/text_table.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Reads vectors.h5 of gladstone. @throws DataError that contains the name of the dataset
 VectorFile read_gladstone_hdf5(std::string const& path);
@@ -88,4 +88,4 @@ bool read_validity(TextTable const& table, DisplacementField& field);
 /// Reads a status column with the codes of VectorStatus. @throws DataError with file:line for any other number
 void read_status(TextTable const& table, std::size_t column, DisplacementField& field);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -8,7 +8,7 @@
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "render/files/fields/readers/vtk_points.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Array of two columns, as the components of vectors in three dimensions.
@@ -48,4 +48,4 @@ VectorFile read_vector_vtk(std::string const& path) {
   return read_own_columns(columns);
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -6,7 +6,7 @@
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 void write_column(Hdf5Writer& file, std::string const& dataset, VectorColumn const& column,
@@ -77,4 +77,4 @@ void write_vector_columns(std::string const& path, DisplacementField const& fiel
   file.close();
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

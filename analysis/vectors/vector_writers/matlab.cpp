@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/base/version.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Data types and array class of the format (MathWorks, "MAT-File Format", tables 1-1 and 1-3).
@@ -84,4 +84,4 @@ void write_vector_matlab(std::string const& path, DisplacementField const& field
   write_matlab_table(path, vector_table(field), origin);
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -5,7 +5,7 @@
 #include "analysis/vectors/vector_writers/vector_writers.h"
 #include "render/base/version.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 constexpr std::array netcdf_variables{
@@ -80,4 +80,4 @@ void write_vector_netcdf(std::string const& path, DisplacementField const& field
   write_netcdf_table(path, vector_table(field), axes, netcdf_variables, origin);
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -7,7 +7,7 @@
 #include "analysis/vectors/vector_writers/vector_writers.h"
 #include "render/files/output_file.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Appends one row per vector. Codes are written as integers, other numbers with 17 significant digits.
@@ -84,4 +84,4 @@ void write_vector_tecplot(std::string const& path, DisplacementField const& fiel
   write_tecplot_table(path, vector_table(field), origin);
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -10,11 +10,8 @@
 #include "analysis/vectors/vector_writers/vector_writers.h"
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline vectors {
 namespace {
-
-using detail::number_column;
-using detail::VectorTable;
 
 std::vector<double> pick_values(std::vector<Vec3d> const& vectors, int axis) {
   std::vector<double> values;
@@ -49,39 +46,38 @@ VectorTable make_table(ThreeComponentField const& field) {
   add("sigma_w_mm", "mm", "standard uncertainty of w", pick_values(field.sigma_mm, 2));
   add("residual_px", "px", "residual of the four equations", field.residual_px);
   add("residual_ratio", "1", "residual divided by its standard uncertainty", field.residual_ratio);
-  table.columns.push_back(detail::status_column(field.status, field.size()));
+  table.columns.push_back(status_column(field.status, field.size()));
   return table;
 }
 
 constexpr std::array variables{
-    detail::NetcdfVariable{"u", "u_mm", "mm", "displacement along x", "u_velocity"},
-    detail::NetcdfVariable{"v", "v_mm", "mm", "displacement along y", "v_velocity"},
-    detail::NetcdfVariable{"w", "w_mm", "mm", "displacement along z", "w_velocity"},
-    detail::NetcdfVariable{"sigma_u", "sigma_u_mm", "mm", "standard uncertainty of u", ""},
-    detail::NetcdfVariable{"sigma_v", "sigma_v_mm", "mm", "standard uncertainty of v", ""},
-    detail::NetcdfVariable{"sigma_w", "sigma_w_mm", "mm", "standard uncertainty of w", ""},
-    detail::NetcdfVariable{"z", "z_mm", "mm", "z of the node, on the laser sheet", ""},
-    detail::NetcdfVariable{"residual", "residual_px", "pix", "residual of the four equations", ""},
-    detail::NetcdfVariable{"residual_ratio", "residual_ratio", "1", "residual over its standard uncertainty", ""},
-    detail::NetcdfVariable{"status", "status", "1", "0 valid, 3 invalid", ""},
+    NetcdfVariable{"u", "u_mm", "mm", "displacement along x", "u_velocity"},
+    NetcdfVariable{"v", "v_mm", "mm", "displacement along y", "v_velocity"},
+    NetcdfVariable{"w", "w_mm", "mm", "displacement along z", "w_velocity"},
+    NetcdfVariable{"sigma_u", "sigma_u_mm", "mm", "standard uncertainty of u", ""},
+    NetcdfVariable{"sigma_v", "sigma_v_mm", "mm", "standard uncertainty of v", ""},
+    NetcdfVariable{"sigma_w", "sigma_w_mm", "mm", "standard uncertainty of w", ""},
+    NetcdfVariable{"z", "z_mm", "mm", "z of the node, on the laser sheet", ""},
+    NetcdfVariable{"residual", "residual_px", "pix", "residual of the four equations", ""},
+    NetcdfVariable{"residual_ratio", "residual_ratio", "1", "residual over its standard uncertainty", ""},
+    NetcdfVariable{"status", "status", "1", "0 valid, 3 invalid", ""},
 };
 
 void write_netcdf(std::string const& path, ThreeComponentField const& field, FileOrigin const& origin) {
-  detail::write_netcdf_table(path, make_table(field),
-                             {{field.x_mm, field.y_mm}, "mm", "X of the world", "Y of the world, upwards"}, variables,
-                             origin);
+  write_netcdf_table(path, make_table(field),
+                     {{field.x_mm, field.y_mm}, "mm", "X of the world", "Y of the world, upwards"}, variables, origin);
 }
 
-detail::VtkLayout make_layout() {
+VtkLayout make_layout() {
   return {{"position_mm", {"x_mm", "y_mm", "z_mm"}},
           {{"displacement_mm", {"u_mm", "v_mm", "w_mm"}}, {"sigma_mm", {"sigma_u_mm", "sigma_v_mm", "sigma_w_mm"}}}};
 }
 
 /// Writes a VTK image, which is in the plane z = 0; the z of the nodes is stored as an array.
 void write_vti(std::string const& path, ThreeComponentField const& field, FileOrigin const& origin) {
-  detail::VtkLayout layout = make_layout();
+  VtkLayout layout = make_layout();
   layout.position.components[2].clear();
-  detail::write_vti_table(path, make_table(field), {field.x_mm, field.y_mm}, layout, origin);
+  write_vti_table(path, make_table(field), {field.x_mm, field.y_mm}, layout, origin);
 }
 
 /// Writer of a format, selected by the extension of the file. A new format requires one more row.
@@ -91,20 +87,16 @@ struct ThreeComponentWriter {
 };
 constexpr std::array writers{
     ThreeComponentWriter{".csv", [](auto const& path, auto const& field,
-                                    auto const& origin) { detail::write_csv_table(path, make_table(field), origin); }},
+                                    auto const& origin) { write_csv_table(path, make_table(field), origin); }},
     ThreeComponentWriter{".nc", write_netcdf},
-    ThreeComponentWriter{".mat",
-                         [](auto const& path, auto const& field, auto const& origin) {
-                           detail::write_matlab_table(path, make_table(field), origin);
-                         }},
-    ThreeComponentWriter{".dat",
-                         [](auto const& path, auto const& field, auto const& origin) {
-                           detail::write_tecplot_table(path, make_table(field), origin);
-                         }},
+    ThreeComponentWriter{".mat", [](auto const& path, auto const& field,
+                                    auto const& origin) { write_matlab_table(path, make_table(field), origin); }},
+    ThreeComponentWriter{".dat", [](auto const& path, auto const& field,
+                                    auto const& origin) { write_tecplot_table(path, make_table(field), origin); }},
     ThreeComponentWriter{".vti", write_vti},
     ThreeComponentWriter{".vtp",
                          [](auto const& path, auto const& field, auto const& origin) {
-                           detail::write_vtp_table(path, make_table(field), make_layout(), origin);
+                           write_vtp_table(path, make_table(field), make_layout(), origin);
                          }},
 };
 
@@ -125,4 +117,4 @@ void write_three_components(std::string const& path, ThreeComponentField const& 
   writer->write(path, field, origin);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline vectors

@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 template <class Value>
@@ -110,4 +110,4 @@ VectorColumn const& column_named(std::vector<VectorColumn> const& columns, std::
   return *found;
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

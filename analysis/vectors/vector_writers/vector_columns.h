@@ -5,7 +5,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Quantity of all vectors, as files store it.
 struct VectorColumn {
@@ -59,4 +59,4 @@ VectorGrid require_vector_grid(DisplacementField const& field, std::string const
 /// Returns the column of this name. @pre it exists
 VectorColumn const& column_named(std::vector<VectorColumn> const& columns, std::string const& name);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

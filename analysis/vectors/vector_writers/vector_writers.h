@@ -9,7 +9,7 @@
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "render/files/hdf5_file.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 
 /// Writers of vectors, one per format. Positions and displacements are in px, y and v downwards, in every format; see
 /// docs/file-formats.md. All write the file at once, after a check that the sources of `origin` have not changed.
@@ -90,4 +90,4 @@ void write_vtp_table(std::string const& path, VectorTable const& table, VtkLayou
 /// Writes the bytes of a file at once, if no source has changed.
 void write_vector_bytes(std::string const& path, std::string const& bytes, FileOrigin const& origin);
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

@@ -11,7 +11,7 @@
 #include "render/base/error.h"
 #include "render/files/base64.h"
 
-namespace gladstone::detail {
+namespace gladstone::inline vectors {
 namespace {
 
 /// Returns a <DataArray> whose values are encoded in base64: the number of bytes, then the bytes.
@@ -171,4 +171,4 @@ void write_vector_vtp(std::string const& path, DisplacementField const& field, F
   write_vtp_table(path, vector_table(field), plane_layout(), origin);
 }
 
-}  // namespace gladstone::detail
+}  // namespace gladstone::inline vectors

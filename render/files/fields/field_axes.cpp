@@ -9,7 +9,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Formats axes as a list: "z, y, x".
@@ -90,4 +90,4 @@ StoredAxis axis_from_coordinates(std::vector<double> x, std::string const& path,
   return axis;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Spatial axis of an array as stored in its file.
 struct StoredAxis {
@@ -53,4 +53,4 @@ void name_axes(StoredAxes& stored, std::string const& axes, std::size_t rank, st
 /// @throws DataError naming `what` if the coordinates are not finite or not monotonic
 StoredAxis axis_from_coordinates(std::vector<double> coordinates, std::string const& path, std::string const& what);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

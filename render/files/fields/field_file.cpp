@@ -16,7 +16,7 @@
 #include "render/files/fields/resampled_field.h"
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 struct FieldFormat {
@@ -57,4 +57,4 @@ std::unique_ptr<FieldSource> open_field(std::string const& path, std::string con
   throw DataError(ErrorCode::unsupported, path, "has an unsupported format; supported are " + known);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -10,7 +10,7 @@
 #include "render/files/fields/field_axes.h"
 #include "render/files/fields/field_units.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Gridded field in a file, with ascending world axes, x fastest, and uniform spacing. Values are read plane by plane;
 /// they are all held in memory only if the file stores the axes in another order or with non-uniform spacing.
@@ -58,4 +58,4 @@ std::vector<std::string> field_extensions();
 std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset, int values = 1,
                                         std::string const& axes = "");
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

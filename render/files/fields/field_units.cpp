@@ -10,7 +10,7 @@
 #include "render/base/text.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Name of a unit, its size in SI units and its dimension.
@@ -253,4 +253,4 @@ void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3>
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 #include "render/base/warning.h"
 #include "render/files/fields/field_axes.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Exponents of mass, length and time in the dimension of a physical quantity.
 struct Dimension {
@@ -73,4 +73,4 @@ double length_unit(std::string_view name);
 void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3> const& unit_of, FieldUnits& units,
                      Warnings& notes);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

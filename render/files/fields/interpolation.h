@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/base/lanes.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Uniform cubic B-spline: four coefficients per cell and axis, C2, exact for cubic polynomials. Unser, Aldroubi &
 /// Eden, IEEE Trans. Signal Process. 41 (1993) 821.
@@ -70,4 +70,4 @@ struct Linear {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -5,7 +5,7 @@
 
 #include "render/base/contracts.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 OrientedField::OrientedField(std::unique_ptr<CheckedSource> stored)
     : FieldSource(stored->values()), stored_(std::move(stored)) {
@@ -99,4 +99,4 @@ void OrientedField::load() {
   all_ = std::move(values);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -6,7 +6,7 @@
 #include "render/files/fields/readers/checked_source.h"
 #include "render/files/fields/value_store.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Stored field in world orientation: axes are permuted to x, y, z and reversed where they descend. A permutation
 /// requires the whole field in memory, a reversal does not. The spacing may be non-uniform, see coordinates().
@@ -40,4 +40,4 @@ class OrientedField final : public FieldSource {
   ValueStore all_;  ///< all values in the order of the file if axes are permuted, once loaded
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

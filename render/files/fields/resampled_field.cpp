@@ -11,7 +11,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Computes the weights of the values at nodes `x` in their interpolation polynomial at `place` (Lagrange).
@@ -199,4 +199,4 @@ void ResampledField::read_rows(int plane, int first_row, int count, std::span<do
   std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first), out.size(), out.begin());
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

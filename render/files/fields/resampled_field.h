@@ -4,7 +4,7 @@
 
 #include "render/files/fields/oriented_field.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Field on a rectilinear grid, resampled along each non-uniform axis to a uniform axis of its finest spacing, by the
 /// cubic through the four nearest nodes (exact for cubics). The whole field is held in memory.
@@ -37,4 +37,4 @@ class ResampledField final : public FieldSource {
   double error_ = 0, range_ = 0;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

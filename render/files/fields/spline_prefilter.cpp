@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 void prefilter_open(std::span<double> line, std::span<double> scratch) {
   std::size_t const n = line.size() - 2;
@@ -75,4 +75,4 @@ void prefilter_periodic(std::span<double> line) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

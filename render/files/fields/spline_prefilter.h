@@ -2,7 +2,7 @@
 
 #include <span>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Converts N nodal values f in place into the coefficients c of the interpolating uniform cubic B-spline with
 /// not-a-knot ends, including one coefficient beyond either end (ghost). With f = c + delta^2 c / 6, the end condition
@@ -17,4 +17,4 @@ void prefilter_open(std::span<double> line, std::span<double> scratch);
 /// Recursive filter with pole sqrt(3) - 2 and exact periodic starting sums (Unser et al. 1993).
 void prefilter_periodic(std::span<double> line);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

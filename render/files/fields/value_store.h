@@ -7,7 +7,7 @@
 
 #include "render/base/available_memory.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Values of a field in memory, stored as float if that preserves all significant bits, else as double.
 class ValueStore {
@@ -41,4 +41,4 @@ class ValueStore {
   std::variant<std::vector<float>, std::vector<double>> values_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -8,9 +8,12 @@
 #include "render/base/vec.h"
 #include "render/files/fields/interpolation.h"
 
-namespace gladstone {
-
+namespace gladstone::inline setup {
 class SetupTable;
+}
+
+namespace gladstone::inline light {
+
 struct FlowSetup;
 
 /// Velocity on a regular grid, interpolated by cubic B-splines (see velocity_file.h). A view, owns no memory. Beyond
@@ -88,4 +91,4 @@ struct FileFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -5,7 +5,7 @@
 #include "render/base/units.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Plane jet along a direction in the XY plane: u = peak / cosh^2(s / half width), s the distance from the symmetry
 /// plane. Profile of Bickley, Phil. Mag. 23 (1937) 727, at one station; the jet does not spread.
@@ -41,4 +41,4 @@ struct JetFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -4,7 +4,7 @@
 
 #include "render/light/flows/plane_vortex.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Lamb-Oseen vortex about an axis parallel to Z: u_theta = Gamma / (2 pi r) (1 - exp(-r^2 / r_c^2)). Lamb,
 /// Hydrodynamics, 1932, section 334a.
@@ -25,4 +25,4 @@ struct LambOseenFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -3,7 +3,7 @@
 #include "render/base/units.h"
 #include "render/light/flow.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 namespace {
 
 constexpr double gas_constant_air = 287.05287;  // [J/(kg K)], ISO 2533 (1975)
@@ -73,4 +73,4 @@ double NormalShockFlow::mean_crowding(Vec3d volume, Vec3d center, double tau) co
   return sum / layers;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -3,9 +3,12 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-namespace gladstone {
-
+namespace gladstone::inline setup {
 class SetupTable;
+}
+
+namespace gladstone::inline light {
+
 struct FlowSetup;
 
 /// Plane front of a steady normal shock, shared by a medium of kind normal_shock and the flow through it.
@@ -57,4 +60,4 @@ struct NormalShockFlow {
   double time_for(double way, double tau) const;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

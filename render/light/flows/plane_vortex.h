@@ -3,7 +3,7 @@
 #include "render/base/units.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Parameters and velocity of a vortex about an axis parallel to Z, common to all vortex models.
 struct PlaneVortex {
@@ -29,4 +29,4 @@ struct PlaneVortex {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

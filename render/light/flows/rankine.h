@@ -2,7 +2,7 @@
 
 #include "render/light/flows/plane_vortex.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Rankine vortex about an axis parallel to Z: u_theta = Gamma r / (2 pi r_c^2) for r < r_c, Gamma / (2 pi r) beyond.
 struct RankineFlow {
@@ -19,4 +19,4 @@ struct RankineFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -3,7 +3,7 @@
 #include "render/base/units.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Solid-body rotation about an axis parallel to Z, counterclockwise as seen by the camera: u = -rate (y - y0), v =
 /// rate (x - x0).
@@ -26,4 +26,4 @@ struct RotationFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -3,7 +3,7 @@
 #include "render/base/units.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Plane shear: u = rate (y - y0).
 struct ShearFlow {
@@ -25,4 +25,4 @@ struct ShearFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

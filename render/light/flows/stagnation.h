@@ -3,7 +3,7 @@
 #include "render/base/units.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Plane stagnation flow: u = rate (x - x0), v = -rate (y - y0).
 struct StagnationFlow {
@@ -25,4 +25,4 @@ struct StagnationFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -5,7 +5,7 @@
 #include "render/base/units.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Two-dimensional Taylor-Green vortices in the XY plane: u = A sin(k x) cos(k y), v = -A cos(k x) sin(k y), k = 2 pi /
 /// wavelength (Taylor & Green, Proc. R. Soc. A 158 (1937) 499).
@@ -33,4 +33,4 @@ struct TaylorGreenFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -2,7 +2,7 @@
 
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline light {
 
 /// Uniform flow with the velocity `velocity_m_s` of table [flow].
 struct UniformFlow {
@@ -17,4 +17,4 @@ struct UniformFlow {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline light

@@ -4,7 +4,7 @@
 
 #include "render/medium/fields/gaussian_field.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Spherical Gaussian density rho = rho_0 + A exp(-r^2 / a^2) about the origin.
 template <class T>
@@ -23,4 +23,4 @@ struct GaussianBlob : GaussianField<T> {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

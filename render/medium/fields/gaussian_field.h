@@ -7,7 +7,7 @@
 #include "render/medium/fields/slab.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Parameters common to plume and blob: rho = rho_0 + A exp(-r^2 / a^2), r the distance from an axis or a point.
 template <class T>
@@ -42,4 +42,4 @@ struct GaussianField : Slab<T> {
   T radius_along_z() const { return radius; }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

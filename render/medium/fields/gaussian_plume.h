@@ -4,7 +4,7 @@
 
 #include "render/medium/fields/gaussian_field.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Cylindrical Gaussian density about the Y axis: rho = rho_0 + A exp(-(x^2 + z^2) / a^2).
 template <class T>
@@ -24,4 +24,4 @@ struct GaussianPlume : GaussianField<T> {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

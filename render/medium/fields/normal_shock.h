@@ -6,7 +6,7 @@
 #include "render/medium/fields/slab.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Returns the density ratio across a normal shock in a perfect gas (Rankine-Hugoniot; NACA Report 1135, 1953, eq. 94).
 /// @param mach  upstream Mach number >= 1
@@ -59,4 +59,4 @@ struct NormalShock : Slab<T> {
   DensityRange densities(Vec2d) const { return {upstream, upstream * shock_density_ratio(mach, constant::gamma_air)}; }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

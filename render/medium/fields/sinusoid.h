@@ -7,7 +7,7 @@
 #include "render/medium/fields/slab.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Plane density wave rho = rho_0 + A sin(k . x + phase) with the wavevector k in the x-y plane.
 template <class T>
@@ -64,4 +64,4 @@ struct Sinusoid : Slab<T> {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -3,7 +3,7 @@
 #include "render/base/host_device.h"
 #include "render/medium/index_sample.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Range of densities in the region that rays cross [kg/m^3].
 struct DensityRange {
@@ -35,4 +35,4 @@ struct NoMedium {
   GLADSTONE_HD IndexSample<T> sample(Vec3<T>) const { return {T(0), {}}; }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -5,7 +5,7 @@
 #include "render/medium/fields/slab.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline medium {
 
 /// Linear density field rho = rho_0 + g . x.
 template <class T>
@@ -38,4 +38,4 @@ struct UniformGradient : Slab<T> {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline medium

@@ -2,7 +2,7 @@
 
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 GlassPlate GlassPlate::read_keys(SetupTable& table) {
   GlassPlate plate;
@@ -18,4 +18,4 @@ GlassPlate GlassPlate::read_keys(SetupTable& table) {
   return plate;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

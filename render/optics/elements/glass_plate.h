@@ -9,7 +9,7 @@
 #include "render/optics/lens_surface.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Common part of the optical elements that are a piece of glass with two plane faces, in SI.
 struct GlassPlate {
@@ -53,4 +53,4 @@ struct GlassPlate {
   static GlassPlate read_keys(SetupTable& table);
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -5,7 +5,7 @@
 #include "render/base/units.h"
 #include "render/optics/lens_setup.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 LensletSetup LensletSetup::read(SetupTable& table) {
   LensletSetup setup;
@@ -35,4 +35,4 @@ std::optional<Warning> LensletSetup::imaging_warning(ImagingGeometry const& imag
                   picture / unit::micrometre, pitch / unit::micrometre, f_number * picture / pitch)};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

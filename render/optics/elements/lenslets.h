@@ -11,7 +11,7 @@
 #include "render/optics/lens_surface.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 struct ImagingGeometry;
 
@@ -97,4 +97,4 @@ struct LensletSetup {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

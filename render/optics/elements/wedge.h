@@ -5,7 +5,7 @@
 #include "render/base/units.h"
 #include "render/optics/elements/glass_plate.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Wedge prism: plate whose exit face is inclined to its entry face. A thin prism deflects light towards its thick side
 /// by (n - 1) times the angle between the faces; at normal incidence on the entry face, the deflection by an angle a is
@@ -34,4 +34,4 @@ struct WedgePrism : GlassPlate {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -2,7 +2,7 @@
 
 #include "render/optics/elements/glass_plate.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Plane-parallel plate: optical window, beam splitter or filter.
 struct OpticalWindow : GlassPlate {
@@ -18,4 +18,4 @@ struct OpticalWindow : GlassPlate {
   }
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -11,7 +11,7 @@
 #include "render/base/units.h"
 #include "render/optics/glass.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 namespace {
 
@@ -149,4 +149,4 @@ std::vector<std::string> quoted_words(std::string_view line) {
   return words;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -7,7 +7,7 @@
 
 #include "render/optics/prescription.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Line of a prescription file, split into words.
 struct PrescriptionLine {
@@ -72,4 +72,4 @@ std::optional<PrescribedMedium> read_glass_code(std::string_view word);
 /// Splits a line at blanks. Text in single or double quotes is one word, without the quotes.
 std::vector<std::string> quoted_words(std::string_view line);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

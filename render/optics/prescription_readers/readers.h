@@ -4,7 +4,7 @@
 
 #include "render/optics/prescription.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Reads a prescription in TOML format; docs/file-formats.md describes its keys.
 Prescription read_toml_prescription(std::string const& path);
@@ -15,4 +15,4 @@ Prescription read_zmx_prescription(std::string const& path);
 /// surfaces cause a DataError, unknown ones a warning.
 Prescription read_seq_prescription(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -17,7 +17,7 @@
 #include "render/optics/prescription_readers/seq_surface.h"
 #include "render/optics/prescription_readers/seq_system.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 class SeqReader {
@@ -297,4 +297,4 @@ Prescription read_seq_prescription(std::string const& path) {
   return reader.finish();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 void for_each_command(std::string_view text, std::function<void(std::string const& command, int line)> const& take) {
   std::string command;
@@ -128,4 +128,4 @@ Glass const* PrivateGlasses::find(std::string const& name) const {
   return found == glasses_.end() ? nullptr : &found->second;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -8,7 +8,7 @@
 #include "render/optics/glass.h"
 #include "render/optics/prescription_readers/lines.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Splits a CODE V file into commands. Line ends and ";" separate commands, "&" joins lines, "!" starts a comment;
 /// within quotes ";", "!" and quotes of the other kind are literal.
@@ -36,4 +36,4 @@ class PrivateGlasses {
   std::map<std::string, Glass> glasses_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -10,7 +10,7 @@
 #include "render/base/units.h"
 #include "render/optics/even_asphere.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 using Outline = SurfaceOutline<double>;
@@ -166,4 +166,4 @@ void finish_seq_surface(SeqSurface& seq, double unit, Warnings& warnings) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -7,7 +7,7 @@
 #include "render/optics/prescription.h"
 #include "render/optics/prescription_readers/lines.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Surface of a CODE V file.
 struct SeqSurface {
@@ -45,4 +45,4 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
 /// Stores aspheric terms and apertures in the surface. @param unit  unit of length [m]
 void finish_seq_surface(SeqSurface& seq, double unit, Warnings& warnings);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

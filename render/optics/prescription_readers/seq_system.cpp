@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 /// Warns that a command has no effect, unless all its numbers are 0.
@@ -95,4 +95,4 @@ bool read_seq_system(std::string const& command, PrescriptionLine const& line, S
   return read_seq_commands(command, line, system, result) || read_seq_fields(command, line, result);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -6,7 +6,7 @@
 #include "render/optics/prescription.h"
 #include "render/optics/prescription_readers/lines.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Properties of the whole lens in a CODE V file: units, aperture, wavelengths, and how curvatures are given.
 struct SeqSystem {
@@ -30,4 +30,4 @@ struct SeqSystem {
 /// @throws DataError
 bool read_seq_system(std::string const& command, PrescriptionLine const& line, SeqSystem& system, Prescription& result);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

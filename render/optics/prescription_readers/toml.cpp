@@ -8,7 +8,7 @@
 #include "render/optics/prescription_readers/readers.h"
 #include "render/setup/setup_table.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 using unit::millimetre;
@@ -119,4 +119,4 @@ Prescription read_toml_prescription(std::string const& path) {
   return result;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -18,7 +18,7 @@
 #include "render/optics/prescription_readers/zmx_surface.h"
 #include "render/optics/prescription_readers/zmx_system.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 /// Number of a surface, which other programs also write as 3.5 or 5AS: a number and a suffix.
@@ -266,4 +266,4 @@ Prescription read_zmx_prescription(std::string const& path) {
   return reader.finish();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

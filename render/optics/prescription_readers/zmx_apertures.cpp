@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 using Outline = SurfaceOutline<double>;
@@ -178,4 +178,4 @@ Warnings ZmxNotes::warnings() const {
   return all;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

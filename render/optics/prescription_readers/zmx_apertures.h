@@ -9,7 +9,7 @@
 #include "render/optics/prescription.h"
 #include "render/optics/prescription_readers/lines.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Apertures and obscurations of a SURF block [m].
 struct ZmxApertures {
@@ -53,4 +53,4 @@ class ZmxNotes {
   std::string unknown_where_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

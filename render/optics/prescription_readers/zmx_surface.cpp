@@ -11,7 +11,7 @@
 #include "render/optics/glass_name.h"
 #include "render/optics/radial_asphere.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 bool is_glass(double nd, double vd) { return is_index_relative_to_air(nd) && vd >= 0; }
@@ -234,4 +234,4 @@ CoordinateBreak break_of(ZmxSurface const& zmx, double unit) {
           zmx.surface.thickness};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

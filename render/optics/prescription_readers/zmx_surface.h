@@ -9,7 +9,7 @@
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/zmx_apertures.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// SURF block of a .zmx file.
 struct ZmxSurface {
@@ -36,4 +36,4 @@ PrescribedSurface shaped_surface(ZmxSurface const& zmx, double unit, Warnings& w
 /// Converts a block of type COORDBRK to a coordinate break. @throws DataError if its thickness is infinite
 CoordinateBreak break_of(ZmxSurface const& zmx, double unit);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

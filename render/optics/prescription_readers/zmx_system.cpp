@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 namespace {
 
 /// Reads the aperture of the system. @param unit_of_length  [m]
@@ -90,4 +90,4 @@ void take_zmx_fields(ZmxSystem const& system, Prescription& result) {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

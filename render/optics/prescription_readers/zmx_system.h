@@ -6,7 +6,7 @@
 #include "render/optics/prescription.h"
 #include "render/optics/prescription_readers/lines.h"
 
-namespace gladstone {
+namespace gladstone::inline optics {
 
 /// Properties of the whole lens in a .zmx file, from the lines ahead of its first surface: units, wavelengths, fields.
 struct ZmxSystem {
@@ -25,4 +25,4 @@ void read_zmx_system(PrescriptionLine const& line, ZmxSystem& system, Prescripti
 /// Uses field angles in the y-z plane; other fields cause a warning.
 void take_zmx_fields(ZmxSystem const& system, Prescription& result);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline optics

@@ -8,7 +8,7 @@
 #include "render/scene/setup.h"
 #include "render/scene/setup_checks.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 void read_bos_z_d(Setup& setup, SetupTable geometry) {
@@ -132,4 +132,4 @@ constinit Experiment const bos_experiment{.name = "bos",
                                           .read = read_bos,
                                           .cross_check = cross_check_bos};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

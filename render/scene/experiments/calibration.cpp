@@ -5,7 +5,7 @@
 #include "render/scene/setup.h"
 #include "render/scene/setup_checks.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 void read_calibration_z_d(Setup& setup, SetupTable geometry) {
@@ -44,4 +44,4 @@ constinit Experiment const calibration_experiment{.name = "calibration",
                                                   .read = read_calibration,
                                                   .cross_check = check_calibration};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

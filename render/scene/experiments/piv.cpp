@@ -8,7 +8,7 @@
 #include "render/scene/setup.h"
 #include "render/scene/setup_checks.h"
 
-namespace gladstone {
+namespace gladstone::inline scene {
 namespace {
 
 /// Reads table [sequence]; nullopt if it is absent.
@@ -95,4 +95,4 @@ constinit Experiment const piv_experiment{.name = "piv",
                                           .read = read_piv,
                                           .cross_check = cross_check_piv};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline scene

@@ -1,7 +1,7 @@
 #include "studies/case/kinds/shared_parts.h"
 #include "studies/case/shared_target.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 void cross_check_bos(CaseSetup& loaded) {
@@ -22,4 +22,4 @@ constinit CaseKind const bos_case_kind{.experiment = bos_experiment,
                                        .write_truth = write_dot_truth,
                                        .own_summary = no_own_summary};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -2,7 +2,7 @@
 #include "studies/case/kinds/shared_parts.h"
 #include "studies/case/shared_target.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 void no_cross_check(CaseSetup& /*loaded*/) {}
@@ -32,4 +32,4 @@ constinit CaseKind const calibration_case_kind{.experiment = calibration_experim
                                                .write_truth = write_dot_truth,
                                                .own_summary = no_own_summary};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

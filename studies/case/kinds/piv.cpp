@@ -9,7 +9,7 @@
 #include "studies/case/kinds/shared_parts.h"
 #include "studies/case/particle_case.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 namespace {
 
 ImageDiameters images_of_particles(Setup const& setup) {
@@ -73,4 +73,4 @@ constinit CaseKind const piv_case_kind{.experiment = piv_experiment,
                                        .write_truth = write_truth_of_particles,
                                        .own_summary = particle_summary};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -9,7 +9,7 @@
 #include "studies/case/case_warnings.h"
 #include "studies/case/truth_file.h"
 
-namespace gladstone {
+namespace gladstone::inline cases {
 
 void cross_check_windows(CaseSetup& loaded) {
   CameraSetup const& camera = loaded.setup.camera;
@@ -83,4 +83,4 @@ nlohmann::json no_own_summary(Scene const& /*scene*/, GroundTruth const& /*truth
   return nlohmann::json::object();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -4,7 +4,7 @@
 #include "studies/case/case_kind.h"
 
 /// Parts that several kinds of cases share.
-namespace gladstone {
+namespace gladstone::inline cases {
 
 /// Reports interrogation windows larger than the image.
 void cross_check_windows(CaseSetup& loaded);
@@ -21,4 +21,4 @@ void write_dot_truth(std::string const& path, Scene const& scene, Rendering cons
                      CaseOutcome const& outcome, FileOrigin const& origin);
 nlohmann::json no_own_summary(Scene const& scene, GroundTruth const& truth, double exposure_e);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline cases

@@ -1,6 +1,6 @@
 #include "studies/compare/comparison_kind.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 std::vector<Vec2d> const& eq9(Comparison const& comparison) { return comparison.point.eq9_px; }
@@ -52,4 +52,4 @@ constinit ComparisonKind const bos_comparison{
     .displacements = dot_displacements,
     .without_rays = by_rays};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

@@ -1,7 +1,7 @@
 #include "studies/compare/comparison_kind.h"
 #include "studies/compare/particle_points.h"
 
-namespace gladstone {
+namespace gladstone::inline compare {
 namespace {
 
 std::vector<Vec2d> const& flow(Comparison const& comparison) { return comparison.flow_px; }
@@ -40,4 +40,4 @@ constinit ComparisonKind const piv_comparison{
     .displacements = particle_displacements,
     .without_rays = has_projected_displacements};
 
-}  // namespace gladstone
+}  // namespace gladstone::inline compare

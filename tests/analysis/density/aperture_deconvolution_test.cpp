@@ -9,7 +9,7 @@
 #include "tests/analysis/density/density_cases.h"
 #include "tests/support/expect_error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Table 1 of Rajendran, Bane & Vlachos: 105 mm at f/11, D_c = 2.386 mm.
@@ -125,4 +125,4 @@ TEST(ApertureDeconvolution, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

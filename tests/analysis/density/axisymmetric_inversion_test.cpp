@@ -10,7 +10,7 @@
 #include "tests/analysis/density/density_cases.h"
 #include "tests/support/expect_error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// exp(-r^2/s^2) at n radii from 0 to 4 s, its projection sqrt(pi) s exp(-x^2/s^2) and the derivative of that. An Abel
@@ -298,4 +298,4 @@ TEST(AxisymmetricInversion, ChoosesTheRegularizationFromMeasuredRows) {
 }
 
 }  // namespace
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

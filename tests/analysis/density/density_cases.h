@@ -12,7 +12,7 @@
 #include "render/base/units.h"
 
 /// Manufactured density fields with known gradient, for the tests of analysis/density.
-namespace gladstone::density {
+namespace gladstone::inline density {
 
 /// Returns a map of n x n nodes on the unit square with the given gradient(x, y); all nodes are valid.
 template <class Gradient>
@@ -70,4 +70,4 @@ FieldError compare_with(PlaneGrid const& grid, std::vector<double> const& result
   return error;
 }
 
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

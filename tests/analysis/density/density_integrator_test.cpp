@@ -10,7 +10,7 @@
 #include "tests/analysis/density/density_cases.h"
 #include "tests/support/expect_error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Density on the grid of the gradient and its regions.
@@ -210,4 +210,4 @@ TEST(DensityIntegrator, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

@@ -10,7 +10,7 @@
 #include "tests/analysis/density/density_cases.h"
 #include "tests/support/expect_error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 ReferenceDensity zero_left_side(PlaneGrid const& grid) { return make_side_reference(grid, GridSide::left, 0.0); }
@@ -214,4 +214,4 @@ TEST(DensityUncertainty, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

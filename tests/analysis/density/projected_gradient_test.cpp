@@ -7,7 +7,7 @@
 #include "render/base/error.h"
 #include "tests/support/expect_error.h"
 
-namespace gladstone::density {
+namespace gladstone::inline density {
 namespace {
 
 /// Table 1 of Rajendran, Bane & Vlachos: 105 mm lens, Z_A = 750 mm, Z_D = 250 mm, pixels of 10 um, M = f/(Z_B - f).
@@ -105,4 +105,4 @@ TEST(ProjectedGradient, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace gladstone::density
+}  // namespace gladstone::inline density

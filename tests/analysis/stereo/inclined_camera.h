@@ -5,7 +5,7 @@
 
 #include "analysis/calibration/pinhole_fit.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 
 inline constexpr double focal_px = 6500.0, distance_m = 0.65, scale = focal_px / distance_m;  // 10 px/mm on the axis
 
@@ -17,4 +17,4 @@ inline PinholeCamera inclined_camera(double degrees) {
            -std::numbers::pi * std::sin(half), 0, 0, distance_m}};
 }
 
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

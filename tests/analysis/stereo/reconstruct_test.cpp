@@ -10,7 +10,7 @@
 #include "analysis/stereo/interpolated_field.h"
 #include "tests/analysis/stereo/inclined_camera.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 using Motion = std::function<Vec3d(Vec3d)>;
@@ -315,4 +315,4 @@ TEST(InterpolatedVectors, NeedARegularGrid) {
 }
 
 }  // namespace
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

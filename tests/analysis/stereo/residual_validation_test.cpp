@@ -10,7 +10,7 @@
 
 #include "tests/analysis/stereo/inclined_camera.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -100,4 +100,4 @@ TEST(ResidualValidation, RejectsNodesNextToAnOutlierOfV) {
 }
 
 }  // namespace
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

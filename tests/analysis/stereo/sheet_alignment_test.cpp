@@ -7,7 +7,7 @@
 
 #include "tests/analysis/stereo/inclined_camera.h"
 
-namespace gladstone::stereo {
+namespace gladstone::inline stereo {
 namespace {
 
 /// The inclined camera with an image of 256 x 256 px.
@@ -167,4 +167,4 @@ TEST(SheetAlignment, FindsAMisalignedSheet) {
 }
 
 }  // namespace
-}  // namespace gladstone::stereo
+}  // namespace gladstone::inline stereo

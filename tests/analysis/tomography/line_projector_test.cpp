@@ -9,7 +9,7 @@
 #include "render/base/parallel.h"
 #include "tests/analysis/tomography/phantom_views.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 double dot_product(std::vector<double> const& a, std::vector<double> const& b) {
@@ -186,4 +186,4 @@ TEST(LineProjector, ResultDoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

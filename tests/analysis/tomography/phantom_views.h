@@ -5,7 +5,7 @@
 
 #include "analysis/tomography/volume_reconstruction.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 
 /// Returns the grid of a cube of the given width about the origin [m].
 inline RegularGrid make_cube(int nodes, double width) {
@@ -53,4 +53,4 @@ inline std::vector<ProjectedView> view_blob(int views, int across, double width,
   return all;
 }
 
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

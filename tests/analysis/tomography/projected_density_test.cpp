@@ -6,7 +6,7 @@
 
 #include "analysis/density/projected_gradient.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 // A camera on the Z axis: pupil at Z = Z_A, dots at Z = -Z_D, the middle of the medium at the origin.
@@ -141,4 +141,4 @@ TEST(ProjectedDensity, VectorsWithoutSightAreHoles) {
 }
 
 }  // namespace
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 RegularGrid make_voxels(int nodes) { return {{nodes, nodes, nodes}, {1e-3, 1e-3, 1e-3}, {}}; }
@@ -51,4 +51,4 @@ TEST(TotalVariation, AccountsForTheSpacing) {
 }
 
 }  // namespace
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

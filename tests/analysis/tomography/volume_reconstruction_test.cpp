@@ -13,7 +13,7 @@
 #include "tests/analysis/tomography/phantom_views.h"
 #include "tests/support/expect_error.h"
 
-namespace gladstone::tomography {
+namespace gladstone::inline tomography {
 namespace {
 
 using testing::AllOf;
@@ -246,4 +246,4 @@ TEST(VolumeReconstruction, SettingsOutOfRangeAreReportedTogether) {
 }
 
 }  // namespace
-}  // namespace gladstone::tomography
+}  // namespace gladstone::inline tomography

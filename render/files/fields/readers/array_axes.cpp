@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 std::string shape_text(ArrayShape const& shape) { return fmt::format("[{}]", fmt::join(shape, ", ")); }
 
@@ -36,4 +36,4 @@ std::optional<ArrayAxes> find_axes(ArrayShape const& shape, int values) {
 
 bool may_be_components(std::size_t size) { return size == 2 || size == 3; }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Number of elements along each axis of an array, slowest first.
 using ArrayShape = std::vector<std::size_t>;
@@ -33,4 +33,4 @@ std::optional<ArrayAxes> find_axes(ArrayShape const& shape, int values);
 /// Returns true if an axis has the length of two- or three-component vectors.
 bool may_be_components(std::size_t size);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

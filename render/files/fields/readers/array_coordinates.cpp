@@ -12,7 +12,7 @@
 #include "render/base/text.h"
 #include "render/files/fields/readers/packing.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Suffix of the name of a coordinate dataset ("x_mm") and its unit; "" if the unit is an attribute.
@@ -113,4 +113,4 @@ std::optional<ArrayCoordinates> CoordinateReader::find(char axis) const {
   }
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 #include "render/files/fields/readers/array_axes.h"
 #include "render/files/fields/readers/array_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Returns the name of a dataset without its groups.
 std::string last_step(std::string const& path);
@@ -62,4 +62,4 @@ class CoordinateReader {
   ArrayAxes axes_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 #include "render/base/warning.h"
 #include "render/files/fields/readers/checked_source.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// File of named arrays of numbers, as open_array_field() reads it: HDF5, MATLAB, NumPy or columns of a table. Shapes
 /// list the slowest axis first.
@@ -57,4 +57,4 @@ class ArrayFile {
 std::unique_ptr<CheckedSource> open_array_field(std::unique_ptr<ArrayFile const> file, std::string const& path,
                                                 FieldSelection const& selection);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

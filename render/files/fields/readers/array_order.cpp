@@ -7,7 +7,7 @@
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Returns the orders of some axes in which each coordinate dataset has the length of its axis plus `more`.
@@ -65,4 +65,4 @@ ArrayOrder order_by_lengths(std::array<std::optional<ArrayCoordinates>, 3> const
   return {fitting.front(), by};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

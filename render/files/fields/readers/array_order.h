@@ -6,7 +6,7 @@
 
 #include "render/files/fields/readers/array_coordinates.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Order of the axes of an array, and how it was determined.
 struct ArrayOrder {
@@ -23,4 +23,4 @@ struct ArrayOrder {
 ArrayOrder order_by_lengths(std::array<std::optional<ArrayCoordinates>, 3> const& of_letter, ArrayAxes const& axes,
                             std::string const& path, std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

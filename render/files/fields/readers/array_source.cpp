@@ -18,7 +18,7 @@
 #include "render/files/fields/readers/packing.h"
 #include "render/files/fields/readers/velocity_arrays.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 class ArraySource final : public CheckedSource {
@@ -263,4 +263,4 @@ std::unique_ptr<CheckedSource> open_array_field(std::unique_ptr<ArrayFile const>
   return std::make_unique<ArraySource>(std::move(file), path, name, selection);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

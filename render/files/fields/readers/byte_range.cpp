@@ -10,7 +10,7 @@
 #include "render/base/interrupt.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Largest ratio of decompressed to compressed size of deflate (zlib, "Maximum Compression Factor").
@@ -79,4 +79,4 @@ void refuse_truncated(ByteRange const& range, std::uint64_t present, std::uint64
                               compressed ? " after decompression" : "", required));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

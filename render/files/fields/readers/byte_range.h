@@ -7,7 +7,7 @@
 
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Part of a file that holds the bytes of one array, possibly compressed.
 struct ByteRange {
@@ -30,4 +30,4 @@ std::vector<char> read_up_to(ByteRange const& range, std::uint64_t count);
 /// Throws DataError that an array has fewer bytes of data than its header requires.
 [[noreturn]] void refuse_truncated(ByteRange const& range, std::uint64_t present, std::uint64_t required);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

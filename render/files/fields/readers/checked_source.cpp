@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Value that marks missing data in the Johns Hopkins Turbulence Databases; as a float it is exact to 3e-5.
@@ -78,4 +78,4 @@ void CheckedSource::refuse_bad_values(std::span<double const> read) {
   throw DataError(ErrorCode::invalid_value, path_, message + "; fetch the field again or cut the region out");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

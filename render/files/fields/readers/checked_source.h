@@ -9,7 +9,7 @@
 #include "render/files/fields/field_axes.h"
 #include "render/files/fields/field_units.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Selection of a field in a file.
 struct FieldSelection {
@@ -64,4 +64,4 @@ class CheckedSource {
   void refuse_bad_values(std::span<double const> read);
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

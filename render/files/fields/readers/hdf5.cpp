@@ -3,7 +3,7 @@
 #include "render/files/fields/readers/array_file.h"
 #include "render/files/hdf5_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 class Hdf5Arrays final : public ArrayFile {
@@ -43,4 +43,4 @@ std::unique_ptr<CheckedSource> open_hdf5(std::string const& path, FieldSelection
   return open_array_field(std::make_unique<Hdf5Arrays>(path), path, selection);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -13,7 +13,7 @@
 #include "render/base/nearest_name.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 std::vector<std::string> ListedArrays::names() const {
   std::vector<std::string> names;
@@ -112,4 +112,4 @@ std::size_t checked_bytes(std::vector<std::size_t> const& shape, std::size_t val
   return static_cast<std::size_t>(bytes);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

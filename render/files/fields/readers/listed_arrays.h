@@ -8,7 +8,7 @@
 #include "render/files/fields/readers/array_file.h"
 #include "render/files/fields/value_store.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Reads consecutive values of an array, in the order of its shape, from number `first` on.
 using ReadValues = std::function<void(std::size_t first, std::span<double> out)>;
@@ -69,4 +69,4 @@ ReadValues load_once(std::function<ValueStore()> load);
 std::size_t checked_bytes(std::vector<std::size_t> const& shape, std::size_t value_bytes, std::string const& path,
                           std::string const& name);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -14,7 +14,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Data type of the numbers of an element (MAT-File Format, table 1-1).
@@ -237,4 +237,4 @@ std::vector<ListedArray> list_matlab_arrays(std::string const& path, std::string
   return arrays;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -7,7 +7,7 @@
 #include "render/files/fields/readers/checked_source.h"
 #include "render/files/fields/readers/listed_arrays.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Opens an array in a MAT-file of MATLAB: level 5 (versions 5 to 7, also compressed; MathWorks, "MAT-File Format") or
 /// version 7.3 (HDF5). MATLAB's first index varies fastest, so that the shape [nx, ny, nz] of ndgrid is read as [nz,
@@ -22,4 +22,4 @@ std::unique_ptr<CheckedSource> open_matlab(std::string const& path, FieldSelecti
 /// @throws DataError for other files, and for truncated or damaged ones
 std::vector<ListedArray> list_matlab_arrays(std::string const& path, std::string const& wanted);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -10,7 +10,7 @@
 #include "render/files/fields/readers/nrrd_bytes.h"
 #include "render/files/fields/readers/nrrd_header.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 template <class Stored>
@@ -97,4 +97,4 @@ std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldSelection
   return std::make_unique<NrrdSource>(path, read_nrrd_header(path, selection.values), selection);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

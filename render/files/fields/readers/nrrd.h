@@ -4,7 +4,7 @@
 
 #include "render/files/fields/readers/checked_source.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Opens a NRRD field, attached (.nrrd) or detached (.nhdr with "data file"), of two or three dimensions and any
 /// additional axes of length one, in any encoding (raw, gzip, bzip2, ascii, hex), numeric type and byte order.
@@ -18,4 +18,4 @@ namespace gladstone {
 ///         the header declares, with the present and required number of bytes
 std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldSelection const& selection);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -10,7 +10,7 @@
 
 #include "render/base/text.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Reads the axes of a header and selects the spatial ones.
@@ -215,4 +215,4 @@ NrrdHeader with_nrrd_axes(NrrdHeader header, NrrdFields const& fields, int value
   return NrrdAxes(fields, std::move(header)).read(values);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

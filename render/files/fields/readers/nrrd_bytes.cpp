@@ -13,7 +13,7 @@
 #include "render/files/fields/readers/nrrd_decoding.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 NrrdBytes::NrrdBytes(NrrdHeader const& header) : header_(header), file_(header.data_path, "the data of a field") {
   try {
@@ -164,4 +164,4 @@ void NrrdBytes::damaged() const {
   throw DataError(ErrorCode::damaged, header_.data_path, "is damaged (" + why + "); copy it again");
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 
 struct gzFile_s;  // of zlib
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Random access to the bytes of the data section: raw data by pread, gzip data by zlib; other encodings are decoded
 /// into memory at the first access, text as doubles.
@@ -61,4 +61,4 @@ class NrrdBytes {
   std::vector<char> decoded_;  ///< all decoded bytes, for encodings held in memory
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -13,7 +13,7 @@
 #include "render/base/interrupt.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 using Encoding = NrrdHeader::Encoding;
@@ -176,4 +176,4 @@ void refuse_too_long(NrrdHeader const& header, std::size_t there) {
                               there, header.data_bytes(), header.sizes_text(), header.value_bytes()));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

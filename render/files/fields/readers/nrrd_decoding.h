@@ -6,7 +6,7 @@
 
 #include "render/files/fields/readers/nrrd_header.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Returns the size of the decoded data [bytes]; text is decoded to doubles.
 std::size_t nrrd_decoded_bytes(NrrdHeader const& header);
@@ -23,4 +23,4 @@ std::vector<char> decode_nrrd(NrrdHeader const& header, std::string const& store
 /// Throws a DataError: the data have `there` bytes or more, which exceeds what the header says.
 [[noreturn]] void refuse_too_long(NrrdHeader const& header, std::size_t there);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

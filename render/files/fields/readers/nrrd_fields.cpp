@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/base/text.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Returns the standard spelling of a field name that has two.
@@ -149,4 +149,4 @@ std::vector<std::string> NrrdFields::quoted_words(std::string const& key) const 
   return words;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -8,7 +8,7 @@
 
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Fields of the header of a NRRD file by name ("sizes: 24 20 16"), with errors that name the field. A field may be
 /// repeated with the same value only.
@@ -62,4 +62,4 @@ class NrrdFields {
   std::vector<std::string> listed_files_;
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

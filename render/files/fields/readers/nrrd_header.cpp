@@ -14,7 +14,7 @@
 #include "render/files/fields/readers/nrrd_fields.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 using Type = NrrdHeader::Type;
@@ -141,4 +141,4 @@ NrrdHeader read_nrrd_header(std::string const& path, int values) {
   return header;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 #include "render/files/fields/field_axes.h"
 #include "render/files/fields/field_units.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Header of a NRRD file that contains a field of two or three dimensions. Format: Kindlmann, "Definition of NRRD file
 /// format", teem.sourceforge.net/nrrd/format.html.
@@ -46,4 +46,4 @@ struct NrrdHeader {
 /// @throws DataError if it is not a field on a grid along the world axes
 NrrdHeader read_nrrd_header(std::string const& path, int values);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

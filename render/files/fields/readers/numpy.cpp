@@ -18,7 +18,7 @@
 #include "render/files/fields/readers/zip_archive.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Converts a number of half precision (IEEE 754 binary16).
@@ -320,4 +320,4 @@ std::unique_ptr<CheckedSource> open_npz(std::string const& path, FieldSelection 
   return open_array_field(std::make_unique<ListedArrays>(path, std::move(arrays), std::move(others)), path, selection);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -4,7 +4,7 @@
 
 #include "render/files/fields/readers/checked_source.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Opens an array of NumPy, format 1.0 to 3.0, of floats, integers or booleans in either byte order, in C or Fortran
 /// order; its shape is [nz, ny, nx] in either. It has no coordinates, so that its spacing is 1. Arrays in C order are
@@ -17,4 +17,4 @@ std::unique_ptr<CheckedSource> open_npy(std::string const& path, FieldSelection 
 /// @throws DataError as open_npy(), and for damaged archives
 std::unique_ptr<CheckedSource> open_npz(std::string const& path, FieldSelection const& selection);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -10,7 +10,7 @@
 #include "render/files/fields/readers/array_axes.h"
 #include "render/files/fields/readers/array_coordinates.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 constexpr char const* own_density = "density_kg_m3";
@@ -59,4 +59,4 @@ std::string only_field(ArrayFile const& file, std::string const& path, int value
                   "has several fields; select one with dataset = " + quoted_list(fields));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

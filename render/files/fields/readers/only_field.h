@@ -4,7 +4,7 @@
 
 #include "render/files/fields/readers/array_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Returns the only dataset that can be the field, for use if the user names none; among several a density of
 /// gladstone, which contains also its uncertainty.
@@ -12,4 +12,4 @@ namespace gladstone {
 /// @throws DataError if there is none, or several
 std::string only_field(ArrayFile const& file, std::string const& path, int values);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 void Packing::unpack(std::span<double> values) const {
   // compared as float, since an attribute may have fewer digits than its data
@@ -31,4 +31,4 @@ Packing read_packing(ArrayFile const& file, std::string const& dataset) {
   return packing;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

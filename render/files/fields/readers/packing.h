@@ -6,7 +6,7 @@
 
 #include "render/files/fields/readers/array_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Packing of an array: CF Conventions 1.11, sections 2.5.1 (missing data) and 8.1 (packed data).
 struct Packing {
@@ -21,4 +21,4 @@ struct Packing {
 /// Reads the attributes scale_factor, add_offset, _FillValue and missing_value of an array.
 Packing read_packing(ArrayFile const& file, std::string const& dataset);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

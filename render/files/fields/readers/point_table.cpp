@@ -15,7 +15,7 @@
 #include "render/files/fields/readers/point_table_reader.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Coordinate of the points along a world axis, and its distinct values in ascending order.
@@ -164,4 +164,4 @@ std::unique_ptr<CheckedSource> open_point_table(std::string const& path, FieldSe
       selection);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -4,7 +4,7 @@
 
 #include "render/files/fields/readers/checked_source.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Opens a list of the points of a regular grid, in any order: text with a header line that names the columns (CSV;
 /// separated by commas, semicolons, tabs or blanks), or Tecplot ASCII. Columns x, y, z (or x_mm ...,
@@ -14,4 +14,4 @@ namespace gladstone {
 /// @throws DataError with file:line for rows that are not numbers, and for points that are missing or given twice
 std::unique_ptr<CheckedSource> open_point_table(std::string const& path, FieldSelection const& selection);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -15,7 +15,7 @@
 #include "render/files/tecplot_zone.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Parses a number with a decimal point, or with a decimal comma: a comma within a field does not separate fields.
@@ -199,4 +199,4 @@ class PointTableReader {
 
 PointTable read_point_table(std::string const& path) { return PointTableReader(path).take(); }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -6,7 +6,7 @@
 
 #include "render/base/warning.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Column of a table: its name and unit, and its values.
 struct PointColumn {
@@ -25,4 +25,4 @@ struct PointTable {
 /// @throws DataError with file:line for a row that is not numbers or has another number of columns than the header
 PointTable read_point_table(std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Reads a number from memory.
 /// @param swap  true if its byte order is not that of the machine
@@ -30,4 +30,4 @@ constexpr StoredNumber stored_number() {
   return {sizeof(Stored), std::numeric_limits<Stored>::digits, read_number<Stored>};
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

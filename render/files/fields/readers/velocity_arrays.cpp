@@ -16,7 +16,7 @@
 #include "render/files/fields/readers/array_coordinates.h"
 #include "render/files/fields/readers/packing.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Names of the arrays of the components of a velocity.
@@ -183,4 +183,4 @@ std::unique_ptr<ArrayFile const> join_velocities(std::unique_ptr<ArrayFile const
   return std::make_unique<VelocityArrays>(std::move(file), path);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

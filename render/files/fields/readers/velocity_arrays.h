@@ -5,7 +5,7 @@
 
 #include "render/files/fields/readers/array_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Joins arrays of velocity components to arrays of vectors: u, v, w (or vx, vy, vz; ux, uy, uz; in upper or lower
 /// case, with or without a unit, "u_m_s") of one group and of equal shape become "velocity", [..., 3], in that group,
@@ -13,4 +13,4 @@ namespace gladstone {
 /// @throws DataError, when units are asked for, if the components have different ones
 std::unique_ptr<ArrayFile const> join_velocities(std::unique_ptr<ArrayFile const> file, std::string const& path);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -4,7 +4,7 @@
 
 #include "render/files/fields/readers/checked_source.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Opens a VTK image (.vti, ImageData) or rectilinear grid (.vtr) in XML, of one or several pieces, as text, base64 or
 /// raw bytes, inline or appended, uncompressed or compressed by zlib, LZ4 or LZMA, of any numeric type and byte order.
@@ -17,4 +17,4 @@ std::unique_ptr<CheckedSource> open_vtk_xml(std::string const& path, FieldSelect
 /// @throws DataError as open_vtk_xml()
 std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldSelection const& selection);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -12,7 +12,7 @@
 #include "render/files/fields/readers/vtk_numbers.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 constexpr std::string_view appended = "<AppendedData";
@@ -126,4 +126,4 @@ void refuse_vtk_numbers(std::string const& path, std::string const& attribute, s
                   fmt::format("{} = \"{}\" is not {} numbers", attribute, excerpt(text), count));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

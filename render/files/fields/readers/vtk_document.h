@@ -19,7 +19,7 @@ class xml_document;
 class xml_node;
 }  // namespace pugi
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// XML tree of a VTK file, without the binary content of <AppendedData>, which remains in the file.
 class VtkDocument {
@@ -77,4 +77,4 @@ std::array<Number, Count> parse_vtk_numbers(std::string_view text, std::string c
   return found;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -16,7 +16,7 @@
 #include "render/files/input_file.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Decodes a name, in which blanks and other characters are written as %20.
@@ -302,4 +302,4 @@ std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldSel
   return make_vtk_source(path, LegacyReader(path, selection).field(), selection);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

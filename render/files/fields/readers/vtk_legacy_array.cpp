@@ -11,7 +11,7 @@
 #include "render/files/fields/readers/word_cursor.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Reads numbers written as text into `values`.
@@ -66,4 +66,4 @@ void refuse_incomplete(InputFile const& file, VtkLegacyArray const& array) {
                   fmt::format("is cut short: data array \"{}\" is incomplete; copy it again", excerpt(array.name)));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -8,7 +8,7 @@
 #include "render/files/fields/value_store.h"
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Array of a legacy file, with the offset of its numbers in the file [bytes].
 struct VtkLegacyArray {
@@ -28,4 +28,4 @@ ValueStore load_legacy_array(InputFile const& file, VtkLegacyArray const& array,
 /// Throws a DataError: the file ends within the array.
 [[noreturn]] void refuse_incomplete(InputFile const& file, VtkLegacyArray const& array);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

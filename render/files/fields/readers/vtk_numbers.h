@@ -6,7 +6,7 @@
 
 #include "render/files/fields/readers/stored_number.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Numeric type in VTK files.
 struct VtkNumber : StoredNumber {
@@ -37,4 +37,4 @@ inline constexpr std::array vtk_numbers{
     vtk_number<std::int32_t>("Int32", "vtkIdType"),
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -17,7 +17,7 @@
 #include "render/base/interrupt.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 [[noreturn]] void refuse_damaged(InputFile const& file, std::string const& name, std::string const& why) {
@@ -238,4 +238,4 @@ std::vector<double> decode_text(VtkPayload const& payload, InputFile const& file
   return values;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -7,7 +7,7 @@
 
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Encoding of the arrays of a VTK XML file.
 struct VtkEncoding {
@@ -39,4 +39,4 @@ std::vector<char> decode_bytes(VtkPayload const& payload, VtkEncoding const& enc
 std::vector<double> decode_text(VtkPayload const& payload, InputFile const& file, std::string const& name,
                                 std::uint64_t count);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

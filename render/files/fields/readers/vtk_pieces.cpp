@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 std::size_t offset_in(std::array<int, 6> const& part, std::array<int, 6> const& whole, std::size_t axis) {
   return static_cast<std::size_t>(part[2 * axis] - whole[2 * axis]);
@@ -67,4 +67,4 @@ ValueStore load_pieces(VtkArrays const& arrays) {
   return store;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -11,7 +11,7 @@
 #include "render/files/fields/value_store.h"
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// One <Piece> of a grid, with the selected array.
 struct VtkPiece {
@@ -59,4 +59,4 @@ class VtkPieceNumbers {
 /// @throws DataError if the pieces do not cover the grid
 ValueStore load_pieces(VtkArrays const& arrays);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

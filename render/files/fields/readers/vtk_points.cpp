@@ -15,7 +15,7 @@
 #include "render/files/fields/readers/vtk_source.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 class PointReader {
@@ -117,4 +117,4 @@ VtkPoints read_vtk_points(std::string const& path, std::string const& wanted) {
   return PointReader(path, wanted).take();
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Array at the points of a VTK file.
 struct VtkPointArray {
@@ -25,4 +25,4 @@ struct VtkPoints {
 /// @throws DataError for unsupported features and for truncated or damaged data
 VtkPoints read_vtk_points(std::string const& path, std::string const& wanted);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

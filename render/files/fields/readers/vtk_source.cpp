@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Returns the axes of an image from its Direction matrix, whose columns are the directions of i, j and k.
@@ -137,4 +137,4 @@ std::string no_such_array(FieldSelection const& selection, std::vector<std::stri
                      names.empty() ? "" : ", which are " + quoted_list(names));
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 #include "render/files/fields/readers/checked_source.h"
 #include "render/files/fields/value_store.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Location of the data of a VTK file: at the points of the grid, or in the cells between them.
 enum class VtkPlace { points, cells };
@@ -50,4 +50,4 @@ inline bool marks_ghosts(std::string const& name) { return name == "vtkGhostType
 /// Returns the message that no array fits the selection. @param names  names of the existing arrays
 std::string no_such_array(FieldSelection const& selection, std::vector<std::string> const& names);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -14,7 +14,7 @@
 #include "render/files/fields/readers/vtk_source.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 /// Reader of the XML tree of a file.
@@ -182,4 +182,4 @@ std::unique_ptr<CheckedSource> open_vtk_xml(std::string const& path, FieldSelect
   return make_vtk_source(path, VtkXmlReader(path, selection).field(), selection);
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -5,7 +5,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 void WordCursor::go_to(std::uint64_t place) {
   begin_ = place;
@@ -57,4 +57,4 @@ std::string WordCursor::line() {
   return text;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

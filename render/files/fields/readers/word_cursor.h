@@ -5,7 +5,7 @@
 
 #include "render/files/input_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Sequential reader of words, lines and bytes of a legacy VTK file.
 class WordCursor {
@@ -31,4 +31,4 @@ class WordCursor {
   std::size_t at_ = 0;  ///< offset of the next byte in the buffer
 };
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/files/text_file.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 namespace {
 
 using namespace std::string_view_literals;
@@ -125,4 +125,4 @@ std::vector<ZipEntry> zip_entries(std::shared_ptr<InputFile const> const& file) 
   return entries;
 }
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files

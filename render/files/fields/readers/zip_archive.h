@@ -6,7 +6,7 @@
 
 #include "render/files/fields/readers/byte_range.h"
 
-namespace gladstone {
+namespace gladstone::inline files {
 
 /// Entry of a zip archive.
 struct ZipEntry {
@@ -19,4 +19,4 @@ struct ZipEntry {
 /// @throws DataError for other files, truncated archives, and entries that are encrypted or neither stored nor deflated
 std::vector<ZipEntry> zip_entries(std::shared_ptr<InputFile const> const& file);
 
-}  // namespace gladstone
+}  // namespace gladstone::inline files
