@@ -7,7 +7,7 @@
 #include "render/base/version.h"
 #include "render/files/hdf5_objects.h"
 
-namespace gladstone::hdf5 {
+namespace gladstone::inline files::hdf5 {
 namespace {
 
 constexpr std::size_t most_skeletons = 4;
@@ -200,4 +200,4 @@ std::vector<char> make_file_image(std::string const& path, HeldContent content) 
   return image;
 }
 
-}  // namespace gladstone::hdf5
+}  // namespace gladstone::inline files::hdf5

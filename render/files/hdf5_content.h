@@ -12,7 +12,7 @@
 /// Content of an HDF5 file before it is written, for hdf5_writer.cpp. Values are compressed and retained without calls
 /// of the HDF5 library, so that several threads prepare files at the same time. Functions with a parameter `file` (an
 /// identifier of HDF5, hid_t) require that the library is locked; `path` is the file's name, for messages.
-namespace gladstone::hdf5 {
+namespace gladstone::inline files::hdf5 {
 
 enum class ValueType { float64, int64, uint16 };
 /// Returns the type of values in memory and in the file (hid_t). @pre the library is locked
@@ -59,4 +59,4 @@ struct HeldContent {
 /// @param content  content of the file; the memory of its datasets is released as they are written
 std::vector<char> make_file_image(std::string const& path, HeldContent content);
 
-}  // namespace gladstone::hdf5
+}  // namespace gladstone::inline files::hdf5

@@ -14,7 +14,7 @@
 
 /// Helpers shared by the files that call the HDF5 C library, hdf5_reader.cpp, hdf5_writer.cpp, hdf5_content.cpp,
 /// hdf5_objects.cpp and hdf5_scales.cpp; not for other files.
-namespace gladstone::hdf5 {
+namespace gladstone::inline files::hdf5 {
 
 /// Global lock around all HDF5 calls, since Debian's HDF5 library is not thread-safe.
 inline std::recursive_mutex& library_lock() {
@@ -64,4 +64,4 @@ inline std::vector<std::string> steps(std::string const& path) {
 /// Writes the attributes of Hdf5Writer::attach_scales() to an open file. @return false if HDF5 fails
 bool attach_scales(std::int64_t file, std::vector<ScaledDataset> const& datasets);
 
-}  // namespace gladstone::hdf5
+}  // namespace gladstone::inline files::hdf5

@@ -4,7 +4,7 @@
 
 #include "render/base/error.h"
 
-namespace gladstone::hdf5 {
+namespace gladstone::inline files::hdf5 {
 namespace {
 
 /// Returns a dataspace of one value, which is created once.
@@ -62,4 +62,4 @@ void make_groups(hid_t file, std::string const& path, std::string const& dataset
   }
 }
 
-}  // namespace gladstone::hdf5
+}  // namespace gladstone::inline files::hdf5

@@ -8,7 +8,7 @@
 /// Attributes and groups of an HDF5 file that is being written, for hdf5_writer.cpp. All functions require that the
 /// library is locked (library_lock()), and throw OutputError if HDF5 fails.
 /// `file` and `object` are identifiers of HDF5 (hid_t); `path` is the file's name, for messages.
-namespace gladstone::hdf5 {
+namespace gladstone::inline files::hdf5 {
 
 /// Throws OutputError unless `good`.
 /// @param what  what cannot be written
@@ -26,4 +26,4 @@ Id open_object(std::int64_t file, std::string const& path, std::string const& ob
 /// Creates the groups above a dataset, without modification times, so that equal input gives equal files.
 void make_groups(std::int64_t file, std::string const& path, std::string const& dataset);
 
-}  // namespace gladstone::hdf5
+}  // namespace gladstone::inline files::hdf5

@@ -4,7 +4,7 @@
 
 #include "render/files/hdf5_handle.h"
 
-namespace gladstone::hdf5 {
+namespace gladstone::inline files::hdf5 {
 namespace {
 
 /// Element of the attribute REFERENCE_LIST of a scale: a dataset and the axis to which the scale is attached.
@@ -70,4 +70,4 @@ bool attach_scales(std::int64_t file, std::vector<ScaledDataset> const& datasets
   return true;
 }
 
-}  // namespace gladstone::hdf5
+}  // namespace gladstone::inline files::hdf5

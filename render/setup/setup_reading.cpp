@@ -6,7 +6,7 @@
 
 #include "render/base/nearest_name.h"
 
-namespace gladstone::setup_reading {
+namespace gladstone::inline setup::setup_reading {
 namespace {
 
 using Kind = SetupNode::Kind;
@@ -76,4 +76,4 @@ std::string wrong_word(std::string const& text, std::vector<std::string> const& 
   return message;
 }
 
-}  // namespace gladstone::setup_reading
+}  // namespace gladstone::inline setup::setup_reading

@@ -6,7 +6,7 @@
 #include "render/setup/setup_state.h"
 
 /// Helpers shared by the source files of SetupTable; not for other files.
-namespace gladstone::setup_reading {
+namespace gladstone::inline setup::setup_reading {
 
 inline std::vector<std::string> below(std::vector<std::string> path, std::string const& key) {
   path.push_back(key);
@@ -59,4 +59,4 @@ std::string wrong_word(std::string const& text, std::vector<std::string> const& 
 
 inline std::string boolean_text(bool value) { return value ? "true" : "false"; }
 
-}  // namespace gladstone::setup_reading
+}  // namespace gladstone::inline setup::setup_reading

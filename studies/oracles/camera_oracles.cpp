@@ -11,7 +11,7 @@
 #include "render/sensor/diffraction_spot.h"
 #include "studies/oracles/oracles.h"
 
-namespace gladstone::oracle {
+namespace gladstone::inline oracles::oracle {
 namespace {
 
 /// Setup of Table 1 of Rajendran, Bane & Vlachos (2019), which is the default of all readers; dots are points.
@@ -111,4 +111,4 @@ double ray_spread_8mm(Renderer& renderer) {
   return truth.displacement_std_px[0].x / std::abs(truth.eq9_px[0].x);
 }
 
-}  // namespace gladstone::oracle
+}  // namespace gladstone::inline oracles::oracle

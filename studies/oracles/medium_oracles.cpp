@@ -8,7 +8,7 @@
 #include "studies/oracles/oracle_media.h"
 #include "studies/oracles/oracles.h"
 
-namespace gladstone::oracle {
+namespace gladstone::inline oracles::oracle {
 namespace {
 
 /// Integrates a ray by Sharma's scheme over the parameter t, with its optical path.
@@ -174,4 +174,4 @@ double shock_ratio_mach_2(Renderer&) { return shock_density_ratio(2, constant::g
 double ciddor_532(Renderer&) { return gladstone_dale_ciddor(532e-9); }
 double merzkirch_532(Renderer&) { return gladstone_dale_merzkirch(532e-9); }
 
-}  // namespace gladstone::oracle
+}  // namespace gladstone::inline oracles::oracle

@@ -5,7 +5,7 @@
 #include "render/medium/index_sample.h"
 
 /// Media with closed-form ray paths, used by `gladstone validate` and the tests.
-namespace gladstone::oracle {
+namespace gladstone::inline oracles::oracle {
 
 /// n^2 = n0^2 + 2 a x: every ray is a parabola in Sharma's parameter, R = R_0 + T_0 t + a t^2/2 (Ghatak & Thyagarajan).
 struct LinearSquaredIndex {
@@ -57,4 +57,4 @@ struct FishEye {
   }
 };
 
-}  // namespace gladstone::oracle
+}  // namespace gladstone::inline oracles::oracle

@@ -3,7 +3,7 @@
 #include "render/scene/renderer.h"
 
 /// Measurements compared in the rows of validate.cpp; units are given in the names or comments.
-namespace gladstone::oracle {
+namespace gladstone::inline oracles::oracle {
 
 // Oracles of the ray equation, defined in medium_oracles.cpp.
 double linear_index_x(Renderer&);  ///< x of a ray after one step of t = 5
@@ -38,4 +38,4 @@ double cone_average_4mm(Renderer&);    ///< displacement in a density wave relat
 double cone_average_8mm(Renderer&);
 double ray_spread_8mm(Renderer&);  ///< standard deviation of the displacements of a dot's rays relative to Eq. 9
 
-}  // namespace gladstone::oracle
+}  // namespace gladstone::inline oracles::oracle
