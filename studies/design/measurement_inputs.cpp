@@ -5,6 +5,7 @@
 
 #include "render/medium/gladstone_dale.h"
 #include "render/render.h"
+#include "render/setup/toml_text.h"
 #include "studies/case/log_silencer.h"
 
 namespace gladstone::inline design {
