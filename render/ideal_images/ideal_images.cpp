@@ -9,7 +9,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "render/ideal_images/draw_light.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 
 namespace gladstone::inline ideal_images {
 namespace {

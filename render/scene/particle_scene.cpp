@@ -10,6 +10,7 @@
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/ideal_projection.h"
+#include "render/scene/light_through_lens.h"
 #include "render/scene/setup_checks.h"
 
 namespace gladstone::inline scene {

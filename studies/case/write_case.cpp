@@ -14,7 +14,7 @@
 #include "render/files/stop_point.h"
 #include "render/method.h"
 #include "render/render.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 #include "render/sensor/detector.h"
 #include "studies/case/case.h"
 #include "studies/case/case_kind.h"

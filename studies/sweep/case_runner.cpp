@@ -15,7 +15,7 @@
 #include "render/files/output_folder.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/method.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/log_silencer.h"
 #include "studies/case/version_text.h"
