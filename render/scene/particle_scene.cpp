@@ -11,7 +11,7 @@
 #include "render/scene/build_camera.h"
 #include "render/scene/ideal_projection.h"
 #include "render/scene/light_through_lens.h"
-#include "render/scene/setup_checks.h"
+#include "render/scene/read_setup.h"
 
 namespace gladstone::inline scene {
 namespace {
