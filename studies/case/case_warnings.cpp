@@ -12,6 +12,7 @@
 #include "render/scene/side_faces.h"
 #include "render/sensor/detector.h"
 #include "studies/case/warning_log.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline cases {
 namespace {

@@ -1,3 +1,5 @@
+#include "studies/case/write_case.h"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -16,7 +18,6 @@
 #include "render/render.h"
 #include "render/scene/light_through_lens.h"
 #include "render/sensor/detector.h"
-#include "studies/case/case.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/case_summary.h"
 #include "studies/case/case_warnings.h"

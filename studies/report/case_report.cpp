@@ -12,6 +12,7 @@
 #include "studies/case/case_files.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/comparison_kind.h"
+#include "studies/compare/reconstruct_case.h"
 #include "studies/figures/comparison_figures.h"
 #include "studies/report/case_view.h"
 #include "studies/report/density_section.h"

@@ -6,8 +6,8 @@
 
 #include "render/base/error.h"
 #include "render/files/output_file.h"
+#include "studies/case/backend.h"
 #include "studies/case/case_files.h"
-#include "studies/case/version_text.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/draw_or_warn.h"
 #include "studies/sweep/manifest.h"
