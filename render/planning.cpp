@@ -6,6 +6,7 @@
 #include "render/method.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
+#include "render/scene/ray_budget.h"
 #include "render/scene/side_faces.h"
 #include "render/scene/two_media.h"
 

@@ -13,7 +13,7 @@
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/rays/trace_particles.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 #include "render/scene/side_faces.h"
 #include "render/scene/source_sample.h"
 #include "render/scene/two_media.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/correlation/correlator.h"
-#include "analysis/correlation/ensemble.h"
+#include "analysis/correlation/standard_correlator.h"
 
 /// Assessment of an image pair as a whole: detects frames that do not correlate, identical frames and periodic
 /// patterns.

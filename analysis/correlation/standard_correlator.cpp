@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "analysis/correlation/correlation_methods.h"
-#include "analysis/correlation/ensemble.h"
 #include "analysis/correlation/plane_sums.h"
 #include "analysis/correlation/steep_refinement.h"
 #include "analysis/correlation/window_deformation.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -9,6 +11,7 @@
 #include "analysis/correlation/vector_validation.h"
 #include "analysis/correlation/window_measurement.h"
 #include "analysis/correlation/window_ops.h"
+#include "render/base/frame_pair.h"
 #include "render/base/host_device.h"
 
 namespace gladstone::inline correlation {
@@ -18,6 +21,21 @@ namespace gladstone::inline correlation {
 /// shifts of up to half a window, later passes up to a quarter of a window. Smoothing applies to the predictors only,
 /// not to the result. Where displacement gradients are steep, the last pass is repeated, see steep_refinement.h.
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings);
+
+/// Sequence of image pairs with a common displacement field, indexed from 0. Each pair is requested once per pass.
+struct PairSequence {
+  std::size_t size = 0;
+  std::function<HostFrames(std::size_t pair)> frames;
+};
+
+/// Measures the displacement field common to all pairs (ensemble correlation). Each pass finds the peaks in the mean of
+/// the pairs' correlation planes, so that few particles or strong noise in single pairs are tolerated. Displacements
+/// that differ between pairs are averaged and broaden the peak. Meinhart, Wereley & Santiago, J. Fluids Eng. 122 (2000)
+/// 285.
+/// @return vectors as described at Correlator::correlate(); they are computed on the CPU
+/// @throws DataError if sizes differ, a window does not fit into the image, or the method or the uncertainty estimator
+/// applies to single pairs only
+DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSettings const& settings);
 
 /// Sequence of passes and their parameters, common to the CPU and the CUDA correlator.
 class CorrelationSchedule {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/correlation/ensemble.h"
+#include "analysis/correlation/standard_correlator.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 

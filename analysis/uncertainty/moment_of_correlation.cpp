@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/correlation/methods/robust_phase.h"
+#include "analysis/correlation/methods/rpc.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/uncertainty/particle_pairs.h"
 

@@ -97,22 +97,4 @@ bool is_too_fine_for_windows(DisplacementField const& ours, std::function<Vec2d(
 DetectedConventions detect_conventions(VectorFile const& file, std::function<Vec2d(Vec2d)> const& truth,
                                        int image_rows);
 
-/// Describes the difference between an interpretation and the format's own as a mistake: "v points up", "the frames
-/// were exchanged".
-std::string describe_difference(VectorConventions const& reading, VectorConventions const& own);
-
-/// Returns a penalty for the differences between an interpretation and the format's own; the likeliest interpretation
-/// has the smallest. Axes and signs count 1 each, exchanged columns 1.2, the offset 0.3, the mirror 0.2; a reversal of
-/// both y and v counts 1.1 in total.
-double convention_penalty(VectorConventions const& reading, VectorConventions const& own);
-
-/// Returns a message on whether the offset of the conventions improves the fit, such as "x - 0.5 px fits better: rms
-/// 0.0021 instead of 0.0050 px"; empty for offset 0.
-std::string offset_report(DetectedConventions const& detected);
-
-/// Returns twice the log-likelihood ratio of fit a to fit b, for errors with the given spreads: 9 corresponds to three
-/// standard deviations. At an overlap of one half, each vector shares its image with three other vectors, so that a
-/// quarter of the components is assumed to be independent. Spreads below 1e-4 px count as equal.
-double log_likelihood_statistic(ConventionFit const& a, ConventionFit const& b);
-
 }  // namespace gladstone::inline vectors

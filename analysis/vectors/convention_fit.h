@@ -38,4 +38,14 @@ double largest_difference(DisplacementField const& field, VectorConventions cons
 /// Returns the smallest convention_penalty() of an interpretation relative to any of the format's own conventions.
 double convention_penalty(VectorConventions const& reading, std::vector<VectorConventions> const& own);
 
+/// Returns a penalty for the differences between an interpretation and the format's own; the likeliest interpretation
+/// has the smallest. Axes and signs count 1 each, exchanged columns 1.2, the offset 0.3, the mirror 0.2; a reversal of
+/// both y and v counts 1.1 in total.
+double convention_penalty(VectorConventions const& reading, VectorConventions const& own);
+
+/// Returns twice the log-likelihood ratio of fit a to fit b, for errors with the given spreads: 9 corresponds to three
+/// standard deviations. At an overlap of one half, each vector shares its image with three other vectors, so that a
+/// quarter of the components is assumed to be independent. Spreads below 1e-4 px count as equal.
+double log_likelihood_statistic(ConventionFit const& a, ConventionFit const& b);
+
 }  // namespace gladstone::inline vectors

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/vectors/convention_fit.h"
+#include "analysis/vectors/convention_report.h"
 #include "analysis/vectors/scale_and_shift.h"
 
 namespace gladstone::inline vectors {

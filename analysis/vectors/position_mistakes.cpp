@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "analysis/vectors/convention_fit.h"
+
 namespace gladstone::inline vectors {
 namespace {
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "analysis/vectors/convention_fit.h"
+#include "analysis/vectors/convention_report.h"
 #include "analysis/vectors/position_mistakes.h"
 
 namespace gladstone::inline vectors {

@@ -1,3 +1,5 @@
+#include "analysis/vectors/vector_conventions.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -108,43 +110,6 @@ bool specifies_reading(std::string_view text) {
     if (!word.empty() && !word.starts_with("px=") && !word.starts_with("px/frame=")) return true;
   }
   return false;
-}
-
-void override_conventions(VectorFile& file, std::string_view text) {
-  VectorConventions const told = parse_conventions(text, file.conventions);
-  if (specifies_reading(text)) {
-    file.conventions = told;
-    file.also.clear();
-    return;
-  }
-  file.conventions.px = told.px;
-  file.conventions.px_per_frame = told.px_per_frame;
-  for (VectorConventions& other : file.also) {
-    other.px = told.px;
-    other.px_per_frame = told.px_per_frame;
-  }
-}
-
-VectorFile convert_to_pixels(VectorFile file, std::string const& path) {
-  bool const places = !file.place_unit.empty() && !file.conventions.px;
-  bool const displacements = !file.displacement_unit.empty() && !file.conventions.px_per_frame;
-  if (places || displacements) {
-    std::string const what = (places ? "positions in " + file.place_unit : std::string()) +
-                             (places && displacements ? " and " : "") +
-                             (displacements ? "displacements in " + file.displacement_unit : std::string());
-    throw DataError(ErrorCode::undetermined, path,
-                    fmt::format("has {} (vectors are compared in px); give the size of a pixel in these units "
-                                "with --conventions {}{}{}, or export px",
-                                what, places ? "px=NUMBER" : "", places && displacements ? "," : "",
-                                displacements ? "px/frame=NUMBER" : ""));
-  }
-  double const px = file.conventions.px.value_or(1.0), px_per_frame = file.conventions.px_per_frame.value_or(1.0);
-  for (Vec2d& p : file.field.position_px) p = p / px;
-  for (Vec2d& d : file.field.displacement_px) d = d / px_per_frame;
-  for (Vec2d& d : file.field.sigma_px) d = d / px_per_frame;
-  for (Vec2d& d : file.field.raw_px) d = d / px_per_frame;
-  arrange_as_grid(file.field);
-  return file;
 }
 
 DisplacementField apply_conventions(DisplacementField field, VectorConventions const& conventions, int image_rows) {

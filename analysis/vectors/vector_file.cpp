@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
+#include "render/base/error.h"
 
 namespace gladstone::inline vectors {
 namespace {
@@ -160,6 +162,57 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
     throw OutputError(
         path, fmt::format("vectors are written as {}; use one of these endings", fmt::join(vector_extensions(), ", ")));
   writer->write(path, field, origin);
+}
+
+void override_conventions(VectorFile& file, std::string_view text) {
+  VectorConventions const told = parse_conventions(text, file.conventions);
+  if (specifies_reading(text)) {
+    file.conventions = told;
+    file.also.clear();
+    return;
+  }
+  file.conventions.px = told.px;
+  file.conventions.px_per_frame = told.px_per_frame;
+  for (VectorConventions& other : file.also) {
+    other.px = told.px;
+    other.px_per_frame = told.px_per_frame;
+  }
+}
+
+VectorFile convert_to_pixels(VectorFile file, std::string const& path) {
+  bool const places = !file.place_unit.empty() && !file.conventions.px;
+  bool const displacements = !file.displacement_unit.empty() && !file.conventions.px_per_frame;
+  if (places || displacements) {
+    std::string const what = (places ? "positions in " + file.place_unit : std::string()) +
+                             (places && displacements ? " and " : "") +
+                             (displacements ? "displacements in " + file.displacement_unit : std::string());
+    throw DataError(ErrorCode::undetermined, path,
+                    fmt::format("has {} (vectors are compared in px); give the size of a pixel in these units "
+                                "with --conventions {}{}{}, or export px",
+                                what, places ? "px=NUMBER" : "", places && displacements ? "," : "",
+                                displacements ? "px/frame=NUMBER" : ""));
+  }
+  double const px = file.conventions.px.value_or(1.0), px_per_frame = file.conventions.px_per_frame.value_or(1.0);
+  for (Vec2d& p : file.field.position_px) p = p / px;
+  for (Vec2d& d : file.field.displacement_px) d = d / px_per_frame;
+  for (Vec2d& d : file.field.sigma_px) d = d / px_per_frame;
+  for (Vec2d& d : file.field.raw_px) d = d / px_per_frame;
+  arrange_as_grid(file.field);
+  return file;
+}
+
+Warnings read_warnings(Hdf5Reader const& file) {
+  Warnings warnings;
+  std::istringstream texts(file.attribute("warnings")), codes(file.attribute("warning_codes"));
+  for (std::string text, line; std::getline(texts, text);) {
+    std::getline(codes, line);
+    std::size_t const blank = std::min(line.find(' '), line.size());
+    std::string const place = line.substr(std::min(blank + 1, line.size()));
+    if (!place.empty()) text.erase(0, place.size() + 2);
+    warnings.push_back({find_warning_code(line.substr(0, blank)), place, text});
+    line.clear();
+  }
+  return warnings;
 }
 
 }  // namespace gladstone::inline vectors

@@ -7,7 +7,7 @@
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/lane_correlation.h"
-#include "analysis/correlation/methods/robust_phase.h"
+#include "analysis/correlation/methods/rpc.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/steep_refinement.h"
 #include "analysis/correlation/subpixel_fit.h"

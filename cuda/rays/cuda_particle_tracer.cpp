@@ -13,7 +13,7 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/rays/trace_particles.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 
 namespace gladstone::cuda::inline rays {
 namespace {

@@ -7,6 +7,7 @@
 #include "python/src/call.h"
 #include "python/src/setup_text.h"
 #include "render/base/error.h"
+#include "studies/case/backend.h"
 #include "studies/case/pair_source.h"
 
 namespace gladstone::python {

@@ -9,6 +9,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/warning_log.h"
 #include "studies/compare/calibrate.h"
+#include "studies/compare/calibration_results.h"
 
 namespace gladstone::python {
 namespace {

@@ -12,10 +12,11 @@
 #include "python/src/warnings.h"
 #include "render/base/error.h"
 #include "studies/case/warning_log.h"
+#include "studies/case/write_case.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/compared_vectors.h"
+#include "studies/compare/comparison_results.h"
 #include "studies/compare/comparison_warnings.h"
-#include "studies/compare/error_report.h"
 #include "studies/figures/comparison_figures.h"
 #include "studies/report/report.h"
 

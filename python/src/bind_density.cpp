@@ -14,6 +14,7 @@
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"
 #include "studies/compare/reconstruct.h"
+#include "studies/compare/reconstruct_case.h"
 
 namespace gladstone::python {
 namespace {

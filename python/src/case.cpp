@@ -10,6 +10,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/log_silencer.h"
 #include "studies/case/truth_file.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::python {
 namespace {

@@ -10,6 +10,7 @@
 #include "studies/case/backend.h"
 #include "studies/case/calibration_case.h"
 #include "studies/case/case.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::python {
 

@@ -14,7 +14,6 @@
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 #include "studies/case/uncertain_inputs.h"
-#include "studies/case/version_text.h"
 
 namespace gladstone::python {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 /// Interface of image readers, and of the shared library gladstone_image_codecs. OpenImageIO loads about 250 other
-/// libraries; a separate library avoids this in programs that read and write no other images than TIFFs (tiff_file.h).
-/// The functions of that library do not throw.
+/// libraries; a separate library avoids this in programs that read and write no other images than TIFFs
+/// (tiff_reader.h). The functions of that library do not throw.
 namespace gladstone::inline files {
 
 /// Type of a sample in memory.

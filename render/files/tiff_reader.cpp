@@ -1,3 +1,5 @@
+#include "render/files/tiff_reader.h"
+
 #include <fmt/format.h>
 #include <tiffio.h>
 
@@ -6,7 +8,6 @@
 #include <cstring>
 
 #include "render/base/error.h"
-#include "render/files/tiff_file.h"
 #include "render/files/tiff_layout.h"
 #include "render/files/tiff_stream.h"
 

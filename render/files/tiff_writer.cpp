@@ -1,10 +1,11 @@
+#include "render/files/tiff_writer.h"
+
 #include <tiffio.h>
 
 #include <algorithm>
 #include <cstring>
 
 #include "render/base/error.h"
-#include "render/files/tiff_file.h"
 #include "render/files/tiff_stream.h"
 
 namespace gladstone::inline files {

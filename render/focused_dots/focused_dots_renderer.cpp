@@ -9,7 +9,7 @@
 #include "render/base/progress.h"
 #include "render/focused_dots/dot_integrator.h"
 #include "render/focused_dots/owned_dot_model.h"
-#include "render/scene/shift_limit.h"
+#include "render/scene/scene.h"
 
 namespace gladstone::inline focused_dots {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "render/base/error.h"
 #include "render/base/units.h"
-#include "render/scene/shift_limit.h"
+#include "render/scene/scene.h"
 
 namespace gladstone::inline rays {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 #include "render/scene/spot.h"
 
 namespace gladstone::inline rays {

@@ -1,3 +1,5 @@
+#include "render/scene/cross_check_places.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,8 @@
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/setup_checks.h"
+#include "render/scene/cross_check.h"
+#include "render/scene/read_setup.h"
 
 /// Checks that no objects between the dots and the lens overlap.
 namespace gladstone::inline scene {

@@ -1,40 +1,8 @@
-#include "render/light/calibration_target.h"
 #include "render/scene/scene.h"
 #include "render/scene/source_kind.h"
 #include "render/scene/source_sample.h"
 
 namespace gladstone::inline scene {
-
-DotPattern build_target(Setup const& setup) {
-  DotPattern dots;
-  double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
-  switch (setup.target.kind) {
-    case TargetKind::dots:
-      if (setup.target.arrangement == DotArrangement::random) {
-        dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
-                                  setup.target.seed);
-      } else {
-        Vec2d const extent = setup.target_extent();
-        dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
-      }
-      break;
-    case TargetKind::lattice:
-      dots.centre = Lattice(setup.target).dots();
-      break;
-    case TargetKind::points:
-      dots.centre = dots_from_csv(setup.target.file, setup.max_off_axis_distance());
-      break;
-    case TargetKind::image:
-      dots = image_target(setup.target.file, setup.target_extent());
-      break;
-  }
-  if (setup.target.kind != TargetKind::image) dots.half_size = diameter / 2;
-  if (Vec2d const middle = setup.target_centre(); setup.target.kind != TargetKind::points && !(middle == Vec2d{})) {
-    for (Vec2d& centre : dots.centre) centre = centre + middle;
-  }
-  return dots;
-}
-
 namespace {
 
 std::vector<MemoryRequirement> dot_memory(Setup const& setup) {

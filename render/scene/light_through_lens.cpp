@@ -1,10 +1,11 @@
+#include "render/scene/light_through_lens.h"
+
 #include <algorithm>
 #include <limits>
 #include <mutex>
 
 #include "render/base/parallel.h"
 #include "render/light/lambert_sphere.h"
-#include "render/scene/particle_scene.h"
 #include "render/sensor/detector.h"
 
 namespace gladstone::inline scene {

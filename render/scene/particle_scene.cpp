@@ -10,7 +10,8 @@
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/ideal_projection.h"
-#include "render/scene/setup_checks.h"
+#include "render/scene/light_through_lens.h"
+#include "render/scene/read_setup.h"
 
 namespace gladstone::inline scene {
 namespace {

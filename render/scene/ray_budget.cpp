@@ -5,7 +5,7 @@
 
 #include "render/base/units.h"
 #include "render/scene/ray_hit.h"
-#include "render/scene/shift_limit.h"
+#include "render/scene/scene.h"
 #include "render/scene/spot.h"
 
 namespace gladstone::inline scene {

@@ -1,3 +1,5 @@
+#include "render/scene/read_setup.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +12,6 @@
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/best_focus.h"
-#include "render/scene/setup.h"
-#include "render/scene/setup_checks.h"
 
 namespace gladstone::inline scene {
 

@@ -61,10 +61,4 @@ struct RenderPlan {
   std::optional<TableError> table_error;  ///< error of the table by which `fineness` was chosen
 };
 
-/// Returns a plan with an integration step and the margin of the pupil that its deflections require, and with one ray
-/// per source.
-/// @throws DataError if rays are deflected by more than 45 degrees before they reach the lens: no real set-up does so,
-/// and the search for a sufficient margin would not terminate
-RenderPlan with_step(Scene const& scene, IntegrationStep const& step);
-
 }  // namespace gladstone::inline scene

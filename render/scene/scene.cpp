@@ -11,8 +11,8 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/files/fields/field_file.h"
+#include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/shift_limit.h"
 #include "render/sensor/sensor.h"
 
 namespace gladstone::inline scene {
@@ -108,6 +108,36 @@ Vec2d Scene::to_target(Vec2d pixel) const {
   }
   double const scale = setup.camera.pixel_pitch / imaging.magnification;
   return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};
+}
+
+DotPattern build_target(Setup const& setup) {
+  DotPattern dots;
+  double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
+  switch (setup.target.kind) {
+    case TargetKind::dots:
+      if (setup.target.arrangement == DotArrangement::random) {
+        dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
+                                  setup.target.seed);
+      } else {
+        Vec2d const extent = setup.target_extent();
+        dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
+      }
+      break;
+    case TargetKind::lattice:
+      dots.centre = Lattice(setup.target).dots();
+      break;
+    case TargetKind::points:
+      dots.centre = dots_from_csv(setup.target.file, setup.max_off_axis_distance());
+      break;
+    case TargetKind::image:
+      dots = image_target(setup.target.file, setup.target_extent());
+      break;
+  }
+  if (setup.target.kind != TargetKind::image) dots.half_size = diameter / 2;
+  if (Vec2d const middle = setup.target_centre(); setup.target.kind != TargetKind::points && !(middle == Vec2d{})) {
+    for (Vec2d& centre : dots.centre) centre = centre + middle;
+  }
+  return dots;
 }
 
 std::vector<MemoryRequirement> memory_requirements(Setup const& setup, FieldMemory field_memory) {

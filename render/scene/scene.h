@@ -84,6 +84,13 @@ std::vector<MemoryRequirement> memory_requirements(Setup const& setup, FieldMemo
 void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed,
                   std::vector<MemoryRequirement> const& more = {});
 
+/// Checks that the medium deflects no ray by more than 45 degrees before it reaches the lens: no real set-up does so,
+/// and the search for a sufficient pupil margin would not terminate.
+/// @param shift  deflection on the lens plane [m]
+/// @param z_b  distance from the dots to the lens [m]
+/// @throws DataError if shift > z_b
+void check_deflection_limit(double shift, double z_b);
+
 /// Returns the dots of a target of BOS or of one plane of a calibration, or the pixels of an image target.
 /// @throws DataError if the dots cannot be placed, or if the target's file is invalid
 DotPattern build_target(Setup const& setup);

@@ -147,13 +147,4 @@ struct Setup {
   double dot_count() const;
 };
 
-/// Reads a setup of BOS, PIV or calibration from its tables. Unsupported keys and combinations are reported by name.
-Setup read_setup(SetupTable root);
-
-/// Checks the setup across tables: focus, planes, steps across the medium, field of view, dot size, dot coverage.
-/// Files are opened only to read the size of the field's grid. Problems are recorded at their keys in the setup's
-/// document.
-/// @return warnings
-Warnings cross_check(Setup const& setup, SetupTable root);
-
 }  // namespace gladstone::inline scene

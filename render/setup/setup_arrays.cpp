@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "render/setup/setup_reading.h"
+#include "render/setup/toml_text.h"
 
 /// Array readers of SetupTable.
 namespace gladstone::inline setup {

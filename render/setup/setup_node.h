@@ -71,17 +71,6 @@ SetupNode parse_toml(std::string_view text, std::string const& name);
 /// Parses the right-hand side of an assignment; nullopt if it is not TOML or nested deeper than most_setup_depth.
 std::optional<SetupNode> parse_toml_value(std::string_view text);
 
-/// Formats a value as TOML on one line.
-std::string toml_text(SetupNode const& node);
-std::string toml_text(std::string_view text);  ///< a TOML string, quoted and escaped
-/// Formats a number in the shortest form that reads back to the same double; always with a decimal point or exponent,
-/// or as inf or nan, so that it remains a float in TOML.
-std::string toml_text(double value);
-/// Formats a table as a TOML document, its values before its sub-tables. @pre node is a table
-std::string toml_document(SetupNode const& node);
-/// Formats a key, quoted if necessary.
-std::string toml_key(std::string const& key);
-
 /// Name of a value's kind for messages: "a text", "an array" ...
 std::string kind_name(SetupNode const& node);
 

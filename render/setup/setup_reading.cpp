@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "render/base/nearest_name.h"
+#include "render/setup/toml_text.h"
 
 namespace gladstone::inline setup::setup_reading {
 namespace {

@@ -1,6 +1,7 @@
 #include "render/setup/setup_record.h"
 
 #include "render/setup/setup_node.h"
+#include "render/setup/toml_text.h"
 
 namespace gladstone::inline setup {
 namespace {

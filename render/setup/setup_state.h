@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct SetupFileName {
   std::vector<std::string> path;
   std::string absolute;
 };
+
+/// Number of characters of a --set assignment that messages show.
+inline constexpr std::size_t longest_assignment = 200;
 
 /// State shared by a SetupDocument and its SetupTables. Paths are the keys from the root, with "[2]" for an element of
 /// an array.

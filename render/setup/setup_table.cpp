@@ -4,6 +4,7 @@
 
 #include "render/base/nearest_name.h"
 #include "render/setup/setup_reading.h"
+#include "render/setup/toml_text.h"
 
 namespace gladstone::inline setup {
 using namespace setup_reading;

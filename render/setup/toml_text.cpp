@@ -1,10 +1,9 @@
+#include "render/setup/toml_text.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
-#include "render/setup/setup_node.h"
-
-/// Formatting of setup values as TOML.
 namespace gladstone::inline setup {
 namespace {
 

@@ -9,6 +9,7 @@
 #include "render/base/image.h"
 #include "studies/benchmark/particle_pair.h"
 #include "studies/case/case.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline benchmarks {
 

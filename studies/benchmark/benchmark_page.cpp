@@ -1,3 +1,5 @@
+#include "studies/benchmark/benchmark_page.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,8 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "studies/benchmark/benchmark_run.h"
-#include "studies/case/version_text.h"
+#include "studies/case/backend.h"
 
 namespace gladstone::inline benchmarks {
 namespace {

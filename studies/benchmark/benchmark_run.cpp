@@ -13,6 +13,7 @@
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
 #include "render/files/source_files.h"
+#include "studies/benchmark/benchmark_coverage.h"
 #include "studies/benchmark/foreign_code.h"
 #include "studies/case/case.h"
 #include "studies/case/case_files.h"

@@ -6,10 +6,8 @@
 
 #include "analysis/correlation/correlation_settings.h"
 #include "analysis/errors/uncertainty_quality.h"
-#include "analysis/uncertainty/combination.h"
 #include "studies/benchmark/benchmark_score.h"
 #include "studies/case/backend.h"
-#include "studies/report/report_page.h"
 
 namespace gladstone::inline benchmarks {
 
@@ -121,24 +119,6 @@ struct WindowTruths {
 };
 WindowTruths compute_window_truths(DisplacementField const& field, ParticlePair const& dots,
                                    CorrelationSettings const& settings, int columns, int rows);
-
-/// Measures the coverage of every uncertainty method with the default passes, on uniform displacement, shear, vortex
-/// and refracted turbulence of 512 x 512 px at 1, 5 and 10 % noise. The seeds were not used to choose any parameter.
-std::vector<CoverageRow> measure_coverage(int seeds, Backend const& device);
-
-/// Fits the combination of uncertainty methods (analysis/uncertainty/combination.h) to the errors of the default
-/// passes. The training set has 48 pairs of 512 x 512 px: uniform displacement, shear and stretch, at 1, 2, 5 and 10 %
-/// noise, with particles of 2.2 to 4.5 px and 12 to 40 of them per 32 x 32 px. It contains no vortices and no
-/// turbulence, on which measure_coverage() also evaluates it.
-UncertaintyCombination learn_combination(Backend const& device);
-
-/// Formats the results as a report page, as JSON and as CSV.
-ReportPage benchmark_page(BenchmarkResult const& result, std::string const& folder);
-std::string benchmark_json(BenchmarkResult const& result);
-std::string benchmark_csv(BenchmarkResult const& result);
-/// Draws noise_against_gain.png and error_against_uncertainty.png, as far as there are data. @return names of the drawn
-/// files
-std::vector<std::string> draw_benchmark(BenchmarkResult const& result, std::string const& folder);
 
 /// Names of the cases from which noise and gain are determined.
 inline constexpr char const* noise_case = "noise_5";

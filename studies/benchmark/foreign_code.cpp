@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "analysis/vectors/convention_report.h"
 #include "analysis/vectors/vector_screening.h"
 #include "render/base/error.h"
 #include "studies/compare/compared_vectors.h"

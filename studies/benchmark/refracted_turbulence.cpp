@@ -10,6 +10,7 @@
 #include "render/sensor/detector.h"
 #include "studies/benchmark/benchmark_cases.h"
 #include "studies/case/shared_folder.h"
+#include "studies/case/write_case.h"
 #include "studies/compare/compare.h"
 
 namespace gladstone::inline benchmarks {

@@ -12,8 +12,6 @@
 #include "render/base/parallel.h"
 #include "render/base/version.h"
 #include "render/render.h"
-#include "studies/case/pair_source.h"
-#include "studies/case/version_text.h"
 
 namespace gladstone::inline cases {
 namespace {

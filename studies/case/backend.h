@@ -50,4 +50,16 @@ int gpu_count();
 /// Returns whether the first GPU is usable.
 bool gpu_is_usable();
 
+/// Returns the index of the GPU whose memory contains an address, as this process counts GPUs; -1: host memory.
+int gpu_of_memory(void const* address);
+
+/// Returns version and commit of this build, "0.1.0 (a5503eb9ee49)".
+std::string build_text();
+
+/// Returns the text of --version: version, commit and backends.
+std::string version_text();
+
+/// Returns version, commit and backends as a JSON object.
+std::string version_json();
+
 }  // namespace gladstone::inline cases

@@ -16,6 +16,7 @@
 #include "render/planning.h"
 #include "render/render.h"
 #include "render/scene/calibration_planes.h"
+#include "studies/case/calibration_truth.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/json_text.h"
 #include "studies/case/warning_json.h"

@@ -48,7 +48,4 @@ Recording record_plane(CameraSetup const& camera, RenderedCalibration const& ren
 /// @return the contents of summary.json
 nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder);
 
-/// Writes truth.h5 of a calibration: /dots, /planes and, if the camera is a pinhole, /pinhole (docs/file-formats.md).
-void write_calibration_truth(std::string const& path, RenderedCalibration const& rendered, FileOrigin const& origin);
-
 }  // namespace gladstone::inline cases

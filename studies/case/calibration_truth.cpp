@@ -1,10 +1,11 @@
+#include "studies/case/calibration_truth.h"
+
 #include <Eigen/Geometry>
 
 #include "render/files/hdf5_axes.h"
 #include "render/light/calibration_target.h"
 #include "render/method.h"
 #include "render/scene/calibration_planes.h"
-#include "studies/case/calibration_case.h"
 
 namespace gladstone::inline cases {
 namespace {

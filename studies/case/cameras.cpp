@@ -11,6 +11,7 @@
 #include "render/base/nearest_name.h"
 #include "render/base/random.h"
 #include "render/setup/setup_node.h"
+#include "render/setup/toml_text.h"
 #include "studies/case/case.h"
 #include "studies/case/case_kind.h"
 

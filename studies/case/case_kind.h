@@ -11,6 +11,7 @@
 #include "render/scene/experiment.h"
 #include "studies/case/peak_locking.h"
 #include "studies/case/render_setup.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline cases {
 

@@ -11,6 +11,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/lens_glasses.h"
 #include "studies/case/warning_json.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline cases {
 namespace {

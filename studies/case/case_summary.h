@@ -3,6 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "studies/case/case.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline cases {
 

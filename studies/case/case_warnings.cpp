@@ -8,10 +8,11 @@
 
 #include "render/base/units.h"
 #include "render/rays/ray_planning.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 #include "render/scene/side_faces.h"
 #include "render/sensor/detector.h"
 #include "studies/case/warning_log.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline cases {
 namespace {

@@ -9,6 +9,7 @@
 #include "render/scene/ray_budget.h"
 #include "render/scene/renderer.h"
 #include "studies/case/case.h"
+#include "studies/case/write_case.h"
 
 /// Warnings about a rendered case, with remedies.
 namespace gladstone::inline cases {

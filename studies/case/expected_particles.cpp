@@ -7,6 +7,7 @@
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
+#include "render/scene/light_through_lens.h"
 #include "render/scene/particle_scene.h"
 #include "render/scene/scene.h"
 

@@ -40,7 +40,4 @@ class PairSource {
   bool on_gpu_;
 };
 
-/// Returns the index of the GPU whose memory contains an address, as this process counts GPUs; -1: host memory.
-int gpu_of_memory(void const* address);
-
 }  // namespace gladstone::inline cases

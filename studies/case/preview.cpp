@@ -8,7 +8,7 @@
 #include "render/planning.h"
 #include "render/render.h"
 #include "render/scene/calibration_planes.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 
 namespace gladstone::inline cases {
 namespace {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "render/base/nearest_name.h"
+#include "render/setup/toml_text.h"
 #include "studies/case/correlation_matrix.h"
 
 namespace gladstone::inline cases {

@@ -1,3 +1,5 @@
+#include "studies/case/write_case.h"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -14,9 +16,8 @@
 #include "render/files/stop_point.h"
 #include "render/method.h"
 #include "render/render.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 #include "render/sensor/detector.h"
-#include "studies/case/case.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/case_summary.h"
 #include "studies/case/case_warnings.h"

@@ -14,6 +14,7 @@
 #include "studies/case/json_text.h"
 #include "studies/case/warning_log.h"
 #include "studies/commands/command.h"
+#include "studies/compare/calibration_results.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/draw_or_warn.h"
 

@@ -42,12 +42,6 @@ std::vector<CommandDescription const*> all_commands(CommandDescription const& co
 /// Returns true if the value of an option or argument is the path of a key of a setup: --set, and `gladstone keys`.
 bool takes_setup_key(CommandDescription const& command, ArgumentDescription const& argument);
 
-/// Return scripts for bash, zsh and fish that complete commands, options, their values and the keys of setups; other
-/// words are names of files.
-std::string bash_completion(CommandDescription const& program);
-std::string zsh_completion(CommandDescription const& program);
-std::string fish_completion(CommandDescription const& program);
-
 /// Returns the manual page gladstone(1) in roff (macros of man(7)).
 std::string manual_page(CommandDescription const& program);
 

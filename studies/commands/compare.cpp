@@ -17,7 +17,7 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
-#include "studies/compare/error_report.h"
+#include "studies/compare/comparison_results.h"
 #include "studies/compare/stereo_scores.h"
 #include "studies/compare/stored_comparison.h"
 #include "studies/drawing/draw_figure.h"

@@ -5,6 +5,7 @@
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/command_description.h"
+#include "studies/commands/completion_scripts.h"
 
 namespace gladstone::inline commands {
 

@@ -1,8 +1,9 @@
+#include "studies/commands/completion_scripts.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "studies/commands/command_description.h"
 #include "studies/commands/setup_keys.h"
 
 namespace gladstone::inline commands {

@@ -15,6 +15,7 @@
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"
 #include "studies/compare/density_table.h"
+#include "studies/compare/reconstruct_case.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/density_figure.h"
 #include "studies/figures/draw_or_warn.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,17 +54,5 @@ Calibration calibrate_case(std::string const& folder);
 /// @throws DataError as calibrate_case(), and if number or size of the images differ from the setup
 /// @throws SetupError if the setup is invalid
 Calibration calibrate_images(std::string const& setup, std::vector<std::string> const& pictures);
-
-/// Writes calibration.h5 (docs/file-formats.md).
-void write_calibration_file(std::string const& path, Calibration const& calibration);
-
-/// Draws the residuals of both models over the image.
-/// @throws GnuplotMissing if gnuplot is not installed
-void draw_calibration(std::string const& path, Calibration const& calibration);
-
-/// Returns the calibration as a JSON object.
-nlohmann::ordered_json calibration_json(Calibration const& calibration);
-/// Formats the calibration as a table of parameters, standard errors and residuals.
-std::string calibration_table(Calibration const& calibration);
 
 }  // namespace gladstone::inline compare

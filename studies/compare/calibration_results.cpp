@@ -1,3 +1,5 @@
+#include "studies/compare/calibration_results.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 #include "studies/case/flat_values.h"
 #include "studies/case/result_rows.h"
 #include "studies/case/warning_json.h"
-#include "studies/compare/calibrate.h"
 #include "studies/drawing/draw_figure.h"
 
 namespace gladstone::inline compare {

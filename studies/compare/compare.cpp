@@ -17,6 +17,7 @@
 #include "render/sensor/detector.h"
 #include "studies/case/truth_file.h"
 #include "studies/case/warning_log.h"
+#include "studies/case/write_case.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/comparison_kind.h"

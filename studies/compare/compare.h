@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "render/scene/renderer.h"
 #include "studies/case/backend.h"
 #include "studies/case/case.h"
+#include "studies/case/write_case.h"
 #include "studies/compare/compared_files.h"
 
 namespace gladstone::inline compare {
@@ -121,10 +121,5 @@ void name_sources(Comparison& comparison, ComparedFiles files);
 /// Compares the vectors of a CASE with its truth and theory. Renders again what the comparison needs, unless
 /// options.reuse is set and a stored comparison of the same files exists.
 Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options);
-
-/// Returns error measures against ray_truth, eq9, eq9_cone (PIV: flow, ambient_truth) and window_truth, and the budget.
-nlohmann::ordered_json compute_error_measures(Comparison const& comparison);
-/// Returns compute_error_measures() as the text of errors.json.
-std::string errors_json(Comparison const& comparison);
 
 }  // namespace gladstone::inline compare

@@ -11,8 +11,8 @@
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
-#include "analysis/correlation/ensemble.h"
 #include "analysis/correlation/pair_assessment.h"
+#include "analysis/correlation/standard_correlator.h"
 #include "analysis/tracking/track_frames.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"

@@ -1,3 +1,5 @@
+#include "studies/compare/reconstruct_case.h"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -9,7 +11,6 @@
 #include "render/base/error.h"
 #include "render/files/input_file.h"
 #include "render/files/stop_point.h"
-#include "studies/case/case.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/truth_file.h"
 #include "studies/case/warning_log.h"
@@ -17,7 +18,6 @@
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/density_budget.h"
 #include "studies/compare/density_truth.h"
-#include "studies/compare/reconstruct.h"
 
 namespace gladstone::inline compare {
 namespace {

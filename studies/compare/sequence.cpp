@@ -22,6 +22,7 @@
 #include "render/files/stop_point.h"
 #include "studies/case/pair_progress.h"
 #include "studies/case/warning_kinds.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/ordered_fields.h"
 #include "studies/compare/pair_correlation.h"
 #include "studies/compare/sequence_folder.h"
@@ -269,6 +270,22 @@ SequenceSettings read_sequence_settings(Pairing pairing, std::string const& path
 SequenceResult correlate_sequence(std::vector<SequencePair> const& pairs, SequenceSettings const& settings,
                                   std::string const& folder, Backend device, bool show_progress) {
   return SequenceRun(pairs, settings, show_progress).run(folder, std::move(device));
+}
+
+void report_sequence(SequenceResult const& result, std::string const& folder) {
+  constexpr std::size_t most_named = 20;
+  std::size_t failed = 0;
+  for (PairRecord const& record : result.pairs) {
+    if (record.error.empty() || ++failed > most_named) continue;
+    log_warning({WarningCode::failed, record.pair.vectors, record.error});
+  }
+  if (failed > most_named)
+    log_warning({WarningCode::failed, "",
+                 fmt::format("{} further pairs failed; sequence.json lists them", failed - most_named)});
+  if (result.count(PairState::done) == 0)
+    throw DataError(ErrorCode::undetermined, folder,
+                    fmt::format("all {} pairs failed; the first: {}", result.pairs.size(), result.pairs.front().error));
+  log_warnings(result.warnings);
 }
 
 }  // namespace gladstone::inline compare

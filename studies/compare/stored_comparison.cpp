@@ -8,8 +8,8 @@
 #include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/sha256.h"
+#include "studies/case/backend.h"
 #include "studies/case/flat_values.h"
-#include "studies/case/version_text.h"
 
 namespace gladstone::inline compare {
 namespace {

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "studies/design/bos_sheet.h"
 #include "studies/design/recommendation_text.h"
 #include "studies/design/sheet.h"
 #include "studies/design/verification_text.h"

@@ -1,3 +1,5 @@
+#include "studies/design/bos_sheet.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,7 +7,6 @@
 
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
-#include "studies/design/sheet.h"
 
 namespace gladstone::inline design {
 namespace {

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "render/base/error.h"
+#include "render/setup/toml_text.h"
 #include "studies/case/uncertain_inputs.h"
 #include "studies/design/sheet.h"
 

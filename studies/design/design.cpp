@@ -13,6 +13,8 @@
 #include "render/medium/field_volume.h"
 #include "render/scene/setup_document.h"
 #include "studies/case/case_files.h"
+#include "studies/design/bos_sheet.h"
+#include "studies/design/piv_sheet.h"
 #include "studies/design/sheet_text.h"
 #include "studies/sweep/manifest.h"
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "render/base/random.h"
@@ -41,5 +42,11 @@ class InputDraws {
   std::vector<CorrelatedGroup> groups_;
   Eigen::MatrixXd factor_;
 };
+
+/// Returns the distribution from which samples of an input are drawn: "normal"; "t, 4 degrees of freedom", scaled by
+/// sigma and shifted to the value (JCGM 101:2008, 6.4.9), with a common chi-squared variate for correlated inputs;
+/// "rectangular"; or "rectangular, limits inexact", a curvilinear trapezoid (6.4.3) whose half width has a relative
+/// uncertainty of 1 / sqrt(2 nu), as has sigma (JCGM 100:2008, G.4.2).
+std::string drawn_distribution(std::vector<MeasurementInput> const& inputs, std::size_t input);
 
 }  // namespace gladstone::inline design

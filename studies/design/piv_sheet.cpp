@@ -1,3 +1,5 @@
+#include "studies/design/piv_sheet.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
 #include "studies/case/expected_particles.h"
-#include "studies/design/sheet.h"
 
 namespace gladstone::inline design {
 namespace {

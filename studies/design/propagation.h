@@ -115,12 +115,6 @@ double coverage_factor(double degrees_of_freedom);
 std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
                                         std::vector<MeasurementInput> const& inputs);
 
-/// Returns the distribution from which samples of an input are drawn: "normal"; "t, 4 degrees of freedom", scaled by
-/// sigma and shifted to the value (JCGM 101:2008, 6.4.9), with a common chi-squared variate for correlated inputs;
-/// "rectangular"; or "rectangular, limits inexact", a curvilinear trapezoid (6.4.3) whose half width has a relative
-/// uncertainty of 1 / sqrt(2 nu), as has sigma (JCGM 100:2008, G.4.2).
-std::string drawn_distribution(std::vector<MeasurementInput> const& inputs, std::size_t input);
-
 /// Returns the relative uncertainty of a gradient from all inputs except the displacement, to first order; it is common
 /// to all vectors.
 double common_relative_uncertainty(GradientMeasurement<double> at, std::vector<MeasurementInput> const& inputs);

@@ -14,6 +14,8 @@
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
 #include "studies/case/json_text.h"
+#include "studies/design/bos_sheet.h"
+#include "studies/design/piv_sheet.h"
 #include "studies/design/sheet_text.h"
 
 namespace gladstone::inline design {

@@ -43,20 +43,4 @@ DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters 
 /// None for calibrations, which have no sheet.
 Warnings list_neglected_effects(Setup const& setup);
 
-/// Returns the gradient for the sheet's displacements: the largest in view, or 10 kg/m^4 if there is none [kg/m^4].
-double sheet_gradient(FixedDesignParameters const& given);
-
-/// Returns how a set-up exceeds the range of the study to which the random error (F26) was fitted, e.g. "dots below 0.8
-/// px, ..."; empty: within.
-std::string beyond_study(DesignPoint<double> const& bench);
-
-/// Computes the sheet of a BOS set-up, F1 to F27. If no gradient is given, deflections are for 10 kg/m^4.
-DesignSheet bos_sheet(Setup const& setup, DesignPoint<double> const& bench);
-
-/// Computes the sheet of a PIV setup: imaging, particle images, particles per window, light and admissible
-/// displacements.
-/// @throws DataError for an invalid file of particles
-/// @pre loaded.setup.piv
-DesignSheet piv_sheet(CaseSetup const& loaded);
-
 }  // namespace gladstone::inline design

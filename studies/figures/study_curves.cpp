@@ -1,3 +1,5 @@
+#include "studies/figures/study_curves.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,21 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "studies/drawing/figure.h"
 #include "studies/figures/study_cells.h"
 
 namespace gladstone::inline figures {
-
-/// Figures of a study; nullopt if the study has no finite values to show.
-std::optional<Figure> make_error_curves(StudyCells const& cells, std::size_t axis);
-std::optional<Figure> make_error_map(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis);
-/// @param points  averages of a study with repeats (study_points()), which separate estimator and pattern; else null
-std::optional<Figure> make_budget(StudyCells const& cells, std::size_t axis, StudyCells const* points);
-/// Returns a figure of the errors that are common to all repeats, and of the scatter between repeats.
-/// @param points  averages of a study with repeats
-std::optional<Figure> make_repeats(StudyCells const& points, std::size_t axis);
 
 /// Common parts of the figures of a study.
 namespace study_drawing {

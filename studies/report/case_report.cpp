@@ -7,11 +7,11 @@
 #include "analysis/errors/error_summary.h"
 #include "analysis/errors/uncertainty_quality.h"
 #include "render/base/error.h"
-#include "render/files/image_file.h"
 #include "render/files/text_file.h"
 #include "studies/case/case_files.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/comparison_kind.h"
+#include "studies/compare/reconstruct_case.h"
 #include "studies/figures/comparison_figures.h"
 #include "studies/report/case_view.h"
 #include "studies/report/density_section.h"
@@ -23,8 +23,6 @@ namespace gladstone::inline report {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int most_frame_px = 1024;  ///< maximum width and height of an image in a report
 
 /// Adds maps of the displacements along the budget's chain and of the contribution of each cause.
 void add_maps(CaseView& view) {
@@ -79,20 +77,6 @@ TextTable errors_table(CaseView const& view) {
     }
   }
   return table;
-}
-
-/// Encodes a frame as 8-bit PNG, scaled from black to white; of a large frame, the central part.
-std::string png_of(Image<double> const& frame, double black, double white) {
-  int const columns = std::min(frame.columns(), most_frame_px), rows = std::min(frame.rows(), most_frame_px);
-  int const left = (frame.columns() - columns) / 2, top = (frame.rows() - rows) / 2;
-  Image<std::uint8_t> picture(columns, rows);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      double const share = (frame(left + column, top + row) - black) / (white - black);
-      picture(column, row) = static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
-    }
-  }
-  return encode_png(picture);
 }
 
 /// Returns setup, frames and compared files with their hashes.
@@ -172,41 +156,6 @@ std::string case_name(std::string const& folder) {
 }
 
 }  // namespace
-
-Chart budget_chart(std::string const& title, Figure figure, ErrorBudget const& budget) {
-  return {"budget", title, largest_term(budget), {{"", std::move(figure)}}};
-}
-
-TextTable budget_table(std::string const& title, ErrorBudget const& budget) {
-  TextTable table{title, {"cause", "bias u", "bias v", "scatter u", "scatter v", "rms"}, {}};
-  auto const add = [&](BudgetTerm const& term) {
-    table.rows.push_back({{term.name},
-                          TableCell::px(term.bias_u_px),
-                          TableCell::px(term.bias_v_px),
-                          TableCell::px(term.random_u_px),
-                          TableCell::px(term.random_v_px),
-                          TableCell::px(term.rms_px)});
-  };
-  for (BudgetTerm const& term : budget.terms) add(term);
-  add(budget.total);
-  return table;
-}
-
-FramePictures frame_pictures(std::string const& folder, std::string const& title) {
-  Image<double> const reference = read_image((fs::path(folder) / case_file::reference).string());
-  Image<double> const flow = read_image((fs::path(folder) / case_file::flow).string());
-  std::vector<double> levels(reference.begin(), reference.end());
-  double const black = quantile(levels, 0), white = std::max(black + 1, quantile(levels, 0.999));
-  bool const cut = reference.columns() > most_frame_px || reference.rows() > most_frame_px;
-  return {
-      title,
-      fmt::format("{} x {} px{}, grey from {:.0f} to {:.0f}, equal for both frames", reference.columns(),
-                  reference.rows(), cut ? fmt::format(", the middle {} px of them", most_frame_px) : "", black, white),
-      "reference",
-      "flow",
-      png_of(reference, black, white),
-      png_of(flow, black, white)};
-}
 
 ReportPage case_report(ReportOptions const& options, Backend const& device) {
   CompareOptions compare;

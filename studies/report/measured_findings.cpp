@@ -7,6 +7,7 @@
 
 #include "analysis/errors/error_summary.h"
 #include "studies/compare/uncorrected_bias.h"
+#include "studies/design/input_draws.h"
 #include "studies/design/measurement_inputs.h"
 
 namespace gladstone::inline report {

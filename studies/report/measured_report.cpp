@@ -7,6 +7,7 @@
 #include "render/files/text_file.h"
 #include "render/scene/setup_document.h"
 #include "studies/case/warning_log.h"
+#include "studies/compare/reconstruct_case.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
 #include "studies/report/case_view.h"

@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 
+#include "analysis/errors/error_summary.h"
 #include "render/base/error.h"
+#include "render/files/image_file.h"
 #include "render/files/output_file.h"
+#include "studies/case/backend.h"
 #include "studies/case/case_files.h"
-#include "studies/case/version_text.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/draw_or_warn.h"
 #include "studies/sweep/manifest.h"
@@ -18,8 +23,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr int most_frame_px = 1024;  ///< maximum width and height of an image in a report
+
 char const* words_of(SourceFiles::Holds holds) {
   return holds == SourceFiles::Holds::pixels ? "pixels" : holds == SourceFiles::Holds::datasets ? "numbers" : "bytes";
+}
+
+/// Encodes a frame as 8-bit PNG, scaled from black to white; of a large frame, the central part.
+std::string png_of(Image<double> const& frame, double black, double white) {
+  int const columns = std::min(frame.columns(), most_frame_px), rows = std::min(frame.rows(), most_frame_px);
+  int const left = (frame.columns() - columns) / 2, top = (frame.rows() - rows) / 2;
+  Image<std::uint8_t> picture(columns, rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      double const share = (frame(left + column, top + row) - black) / (white - black);
+      picture(column, row) = static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+    }
+  }
+  return encode_png(picture);
 }
 
 }  // namespace
@@ -93,6 +114,22 @@ WrittenReport write_report(ReportOptions const& options, Backend const& device) 
   WrittenReport written{"", page.doubtful};
   for (std::string const& finding : page.findings) written.findings += finding + '\n';
   return written;
+}
+
+FramePictures frame_pictures(std::string const& folder, std::string const& title) {
+  Image<double> const reference = read_image((fs::path(folder) / case_file::reference).string());
+  Image<double> const flow = read_image((fs::path(folder) / case_file::flow).string());
+  std::vector<double> levels(reference.begin(), reference.end());
+  double const black = quantile(levels, 0), white = std::max(black + 1, quantile(levels, 0.999));
+  bool const cut = reference.columns() > most_frame_px || reference.rows() > most_frame_px;
+  return {
+      title,
+      fmt::format("{} x {} px{}, grey from {:.0f} to {:.0f}, equal for both frames", reference.columns(),
+                  reference.rows(), cut ? fmt::format(", the middle {} px of them", most_frame_px) : "", black, white),
+      "reference",
+      "flow",
+      png_of(reference, black, white),
+      png_of(flow, black, white)};
 }
 
 }  // namespace gladstone::inline report

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "render/setup/setup_node.h"
+#include "render/setup/toml_text.h"
 
 namespace gladstone::inline sweep {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "render/base/not_a_number.h"
 #include "studies/case/case_warnings.h"
+#include "studies/case/write_case.h"
 #include "studies/compare/comparison_kind.h"
 #include "studies/compare/reconstruct.h"
 

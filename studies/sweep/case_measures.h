@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "studies/case/write_case.h"
 #include "studies/sweep/case_runner.h"
 
 /// Measures of a case, the columns of a study's table.

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "studies/case/write_case.h"
 #include "studies/compare/compare.h"
 #include "studies/sweep/results.h"
 

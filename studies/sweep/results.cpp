@@ -21,7 +21,7 @@
 #include "render/files/partial.h"
 #include "render/files/stop_point.h"
 #include "render/files/text_file.h"
-#include "studies/case/version_text.h"
+#include "studies/case/backend.h"
 #include "studies/case/warning_json.h"
 
 namespace gladstone::inline sweep {

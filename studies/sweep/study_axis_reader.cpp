@@ -12,6 +12,7 @@
 #include "render/base/nearest_name.h"
 #include "render/files/text_file.h"
 #include "render/setup/setup_table.h"
+#include "render/setup/toml_text.h"
 
 namespace gladstone::inline sweep {
 namespace {

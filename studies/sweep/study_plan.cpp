@@ -16,6 +16,7 @@
 #include "render/base/random.h"
 #include "render/base/sobol.h"
 #include "render/files/content_hash.h"
+#include "render/scene/read_setup.h"
 #include "studies/case/case.h"
 #include "studies/case/correlation_setup.h"
 #include "studies/case/sequence_pair.h"

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/vectors/convention_report.h"
 #include "render/base/units.h"
 
 namespace gladstone {

@@ -1,11 +1,10 @@
-#include "analysis/correlation/ensemble.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/correlation/standard_correlator.h"
 #include "render/base/error.h"
 #include "studies/benchmark/particle_pair.h"
 #include "tests/support/expect_error.h"

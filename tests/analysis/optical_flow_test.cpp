@@ -5,8 +5,8 @@
 #include <string>
 
 #include "analysis/correlation/correlator.h"
-#include "analysis/correlation/ensemble.h"
 #include "analysis/correlation/optical_flow/dense_flow.h"
+#include "analysis/correlation/standard_correlator.h"
 #include "render/base/error.h"
 #include "studies/benchmark/particle_pair.h"
 #include "tests/support/expect_error.h"

@@ -132,7 +132,7 @@ std::vector<Row> const& rows() {
           "analysis/vectors/vector_readers/gladstone.cpp", "analysis/vectors/vector_readers/own_columns.cpp",
           "analysis/vectors/vector_writers/netcdf.cpp", "analysis/vectors/vector_writers/vector_columns.cpp",
           "python/src/bind_field.cpp"}},
-        {"combination", {"studies/benchmark/benchmark_learning.cpp"}}},
+        {"combination", {"studies/benchmark/benchmark_coverage.cpp"}}},
        true},
       {"name of a density solver",
        "analysis/density",
@@ -154,8 +154,8 @@ std::vector<Row> const& rows() {
        std::regex("ErrorMeasure\\{(?:\\.name = )?\"(\\w+)\""),
        // the table, texts and figures that select some measures, and the budget, whose terms have some of these keys
        {"analysis/errors/error_summary.cpp", "studies/benchmark/benchmark_page.cpp",
-        "studies/benchmark/benchmark_figures.cpp", "studies/report/case_findings.cpp",
-        "studies/figures/error_figures.cpp", "studies/compare/comparison_results.cpp"},
+        "studies/benchmark/benchmark_results.cpp", "studies/report/case_view.cpp", "studies/figures/error_figures.cpp",
+        "studies/compare/comparison_results.cpp"},
        // also keys of other results
        {{"count",
          {"analysis/errors/uncertainty_quality.cpp", "analysis/errors/error_summary.h",

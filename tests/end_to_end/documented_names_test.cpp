@@ -11,6 +11,7 @@
 #include "analysis/density/density_methods.h"
 #include "analysis/errors/error_summary.h"
 #include "analysis/uncertainty/uncertainty.h"
+#include "studies/benchmark/benchmark_results.h"
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/commands/setup_keys.h"
 #include "studies/design/bounds.h"

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "render/base/vec.h"
+#include "studies/compare/comparison_results.h"
 #include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {

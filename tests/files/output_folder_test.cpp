@@ -13,6 +13,7 @@
 
 #include <cerrno>
 
+#include "studies/case/write_case.h"
 #include "tests/files/support/output.h"
 #include "tests/support/expect_error.h"
 

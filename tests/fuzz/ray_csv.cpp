@@ -1,3 +1,4 @@
+#include "render/scene/read_setup.h"
 #include "render/scene/scene.h"
 #include "studies/case/ray_file.h"
 #include "tests/fuzz/input.h"

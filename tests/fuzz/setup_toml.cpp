@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "render/scene/cross_check.h"
+#include "render/scene/read_setup.h"
 #include "render/scene/setup.h"
 #include "render/setup/setup_table.h"
 #include "studies/case/correlation_setup.h"

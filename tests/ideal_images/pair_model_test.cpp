@@ -7,7 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/ideal_images/ideal_images.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 #include "tests/support/edge_integral.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/ideal_pairs.h"

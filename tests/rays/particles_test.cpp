@@ -7,7 +7,7 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/rays/rays_renderer.h"
-#include "render/scene/particle_scene.h"
+#include "render/scene/light_through_lens.h"
 #include "render/scene/two_media.h"
 #include "tests/scene/piv_setups.h"
 #include "tests/scene/planned_scene.h"

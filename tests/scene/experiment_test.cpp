@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "render/scene/calibration_planes.h"
+#include "render/scene/read_setup.h"
 #include "render/scene/scene.h"
 #include "tests/scene/read_setup_text.h"
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "render/rays/ray_planning.h"
+#include "render/scene/ray_budget.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "render/scene/cross_check.h"
+#include "render/scene/read_setup.h"
 #include "render/scene/setup.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"

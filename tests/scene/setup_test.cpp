@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "render/scene/build_camera.h"
+#include "render/scene/cross_check.h"
+#include "render/scene/read_setup.h"
 #include "render/scene/scene.h"
 #include "tests/scene/read_setup_text.h"
 #include "tests/scene/small_scenes.h"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/benchmark/benchmark_results.h"
 #include "studies/benchmark/benchmark_run.h"
 
 namespace gladstone {

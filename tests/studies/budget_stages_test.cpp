@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "studies/compare/error_report.h"
+#include "studies/compare/comparison_results.h"
 #include "studies/report/case_view.h"
 
 namespace gladstone {

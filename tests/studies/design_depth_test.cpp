@@ -10,6 +10,7 @@
 #include "render/render.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
+#include "studies/design/bos_sheet.h"
 #include "studies/design/sheet.h"
 #include "studies/report/layout_view.h"
 #include "tests/support/folder_fixture.h"

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "studies/design/bos_sheet.h"
+#include "studies/design/piv_sheet.h"
 #include "studies/design/sheet.h"
 #include "studies/design/sheet_text.h"
 #include "studies/figures/design_map.h"

@@ -9,6 +9,7 @@
 
 #include "render/base/units.h"
 #include "studies/case/case.h"
+#include "studies/design/bos_sheet.h"
 #include "studies/design/design_point.h"
 #include "studies/design/sheet.h"
 #include "tests/support/expect_warning.h"

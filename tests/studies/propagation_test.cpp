@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "studies/case/backend.h"
+#include "studies/design/input_draws.h"
 #include "studies/design/measurement_inputs.h"
 
 namespace gladstone {

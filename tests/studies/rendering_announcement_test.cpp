@@ -5,6 +5,7 @@
 #include <string>
 
 #include "studies/case/case.h"
+#include "studies/case/write_case.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {

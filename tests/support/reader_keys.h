@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/base/error.h"
+#include "render/scene/read_setup.h"
 #include "render/scene/setup.h"
 #include "render/setup/setup_state.h"
 #include "studies/case/correlation_setup.h"

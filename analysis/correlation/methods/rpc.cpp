@@ -1,9 +1,10 @@
+#include "analysis/correlation/methods/rpc.h"
+
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "analysis/correlation/correlation_methods.h"
-#include "analysis/correlation/methods/robust_phase.h"
 #include "render/base/units.h"
 
 namespace gladstone::inline correlation {

@@ -93,4 +93,18 @@ GreyImage normalised_frame(GreyImage frame) {
   return frame;
 }
 
+GreyRange joint_range(GreyImage const& reference, GreyImage const& flow) {
+  std::vector<float> levels(reference.level);
+  levels.insert(levels.end(), flow.level.begin(), flow.level.end());
+  if (levels.empty()) return {};
+  GreyRange range;
+  range.low = *std::min_element(levels.begin(), levels.end());
+  auto const high = levels.end() - 1 - static_cast<std::ptrdiff_t>(levels.size() / brightest_pixels);
+  std::nth_element(levels.begin(), high, levels.end());
+  range.high = *high;
+  // In frames with fewer bright pixels than this fraction, use the full range.
+  if (!(range.high > range.low)) range.high = *std::max_element(levels.begin(), levels.end());
+  return range;
+}
+
 }  // namespace gladstone::inline correlation

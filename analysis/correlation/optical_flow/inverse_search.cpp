@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <mutex>
 #include <opencv2/video/tracking.hpp>
 
@@ -70,20 +69,6 @@ DenseFlow one_way(cv::Mat const& from, cv::Mat const& to) {
 }
 
 }  // namespace
-
-GreyRange joint_range(GreyImage const& reference, GreyImage const& flow) {
-  std::vector<float> levels(reference.level);
-  levels.insert(levels.end(), flow.level.begin(), flow.level.end());
-  if (levels.empty()) return {};
-  GreyRange range;
-  range.low = *std::min_element(levels.begin(), levels.end());
-  auto const high = levels.end() - 1 - static_cast<std::ptrdiff_t>(levels.size() / brightest_pixels);
-  std::nth_element(levels.begin(), high, levels.end());
-  range.high = *high;
-  // In frames with fewer bright pixels than this fraction, use the full range.
-  if (!(range.high > range.low)) range.high = *std::max_element(levels.begin(), levels.end());
-  return range;
-}
 
 DenseFlow dense_inverse_search(GreyImage const& reference, GreyImage const& flow) {
   GreyRange const range = joint_range(reference, flow);

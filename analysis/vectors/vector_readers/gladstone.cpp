@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <sstream>
 
 #include "analysis/vectors/vector_readers/own_columns.h"
 #include "analysis/vectors/vector_readers/vector_readers.h"
@@ -119,24 +118,6 @@ VectorFile read_gladstone_tecplot(TextTable const& table) {
   file.warnings = table.warnings;
   file.complete = table.complete;
   return file;
-}
-
-}  // namespace gladstone::inline vectors
-
-namespace gladstone::inline vectors {
-
-Warnings read_warnings(Hdf5Reader const& file) {
-  Warnings warnings;
-  std::istringstream texts(file.attribute("warnings")), codes(file.attribute("warning_codes"));
-  for (std::string text, line; std::getline(texts, text);) {
-    std::getline(codes, line);
-    std::size_t const blank = std::min(line.find(' '), line.size());
-    std::string const place = line.substr(std::min(blank + 1, line.size()));
-    if (!place.empty()) text.erase(0, place.size() + 2);
-    warnings.push_back({find_warning_code(line.substr(0, blank)), place, text});
-    line.clear();
-  }
-  return warnings;
 }
 
 }  // namespace gladstone::inline vectors

@@ -5,8 +5,9 @@
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
+#include "render/scene/cross_check.h"
+#include "render/scene/read_setup.h"
 #include "render/scene/setup.h"
-#include "render/scene/setup_checks.h"
 
 namespace gladstone::inline scene {
 namespace {

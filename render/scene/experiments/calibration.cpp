@@ -2,8 +2,9 @@
 
 #include "render/light/calibration_target.h"
 #include "render/scene/calibration_planes.h"
+#include "render/scene/cross_check.h"
+#include "render/scene/read_setup.h"
 #include "render/scene/setup.h"
-#include "render/scene/setup_checks.h"
 
 namespace gladstone::inline scene {
 namespace {

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "render/base/units.h"
+#include "render/scene/cross_check.h"
 #include "render/scene/particle_scene.h"
 #include "render/scene/setup.h"
-#include "render/scene/setup_checks.h"
 
 namespace gladstone::inline scene {
 namespace {

@@ -1,6 +1,7 @@
 #include "studies/case/calibration_case.h"
 #include "studies/case/kinds/shared_parts.h"
 #include "studies/case/shared_target.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline cases {
 namespace {

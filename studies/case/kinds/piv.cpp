@@ -8,6 +8,7 @@
 #include "studies/case/expected_particles.h"
 #include "studies/case/kinds/shared_parts.h"
 #include "studies/case/particle_case.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline cases {
 namespace {

@@ -8,6 +8,7 @@
 #include "render/planning.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/truth_file.h"
+#include "studies/case/write_case.h"
 
 namespace gladstone::inline cases {
 

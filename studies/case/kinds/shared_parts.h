@@ -2,6 +2,7 @@
 
 #include "render/base/warning.h"
 #include "studies/case/case_kind.h"
+#include "studies/case/write_case.h"
 
 /// Parts that several kinds of cases share.
 namespace gladstone::inline cases {

@@ -7,6 +7,7 @@
 #include "analysis/errors/error_summary.h"
 #include "render/base/version.h"
 #include "render/render.h"
+#include "render/scene/read_setup.h"
 #include "render/scene/scene.h"
 
 namespace {

@@ -1,5 +1,3 @@
-#include "render/files/tiff_file.h"
-
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,6 +13,8 @@
 
 #include "render/base/error.h"
 #include "render/files/image_file.h"
+#include "render/files/tiff_reader.h"
+#include "render/files/tiff_writer.h"
 #include "tests/files/support/output.h"
 #include "tests/support/expect_error.h"
 

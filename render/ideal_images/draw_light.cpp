@@ -1,20 +1,14 @@
+#include "render/ideal_images/draw_light.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
-#include <utility>
 
-#include "render/base/freed_memory.h"
-#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
-#include "render/ideal_images/draw_light.h"
-#include "render/ideal_images/ideal_images.h"
-#include "render/scene/particle_scene.h"
 
 namespace gladstone::inline ideal_images {
 namespace {
 
-constexpr int frames = 2;
 constexpr int band_rows = 64;  // rows of an image that one thread renders at a time
 
 /// Copies of the particle images that overlap each band of image rows, in their order. Sums within a band therefore
@@ -94,42 +88,6 @@ void draw_band(std::span<ParticleImage const> spots, std::size_t band, GaussianS
   for (int row = 0; row < rows; ++row) std::copy_n(light.pixel(0, row), image.columns(), &image(0, top + row));
 }
 
-/// Returns the PSF of the widest image that is not faint. Its footprint is used for all images.
-GaussianSpot<double> find_widest(std::array<std::vector<ParticleImage>, frames> const& spots, double sigma) {
-  double brightest = 0;
-  for (auto const& frame : spots)
-    for (ParticleImage const& spot : frame) brightest = std::max(brightest, spot.light);
-  for (auto const& frame : spots)
-    for (ParticleImage const& spot : frame)
-      if (spot.light > faint_image * brightest) sigma = std::max(sigma, spot.sigma);
-  return {sigma};
-}
-
-/// Returns the truth of particles with given image positions, and light in photons.
-GroundTruth truth_of(Particles const& particles, std::array<std::vector<ParticleImage>, frames> const& spots) {
-  GroundTruth truth;
-  truth.resize(particles.size());
-  truth.position_m = particles.place[0];
-  truth.particles.second_m = particles.place[1];
-  truth.particles.diameter_m = particles.diameter;
-  for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px})
-    theory->assign(truth.size(), {not_a_number, not_a_number});
-  parallel_chunks(truth.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      ParticleImage const &first = spots[0][i], &second = spots[1][i];
-      bool const both = first.light > 0 && second.light > 0;
-      truth.reference_px[i] = first.light > 0 ? first.at : Vec2d{not_a_number, not_a_number};
-      truth.displacement_px[i] = both ? second.at - first.at : Vec2d{not_a_number, not_a_number};
-      truth.displacement_error_px[i] = both ? Vec2d{} : Vec2d{not_a_number, not_a_number};
-      truth.displacement_std_px[i] = second.light > 0 ? Vec2d{} : Vec2d{not_a_number, not_a_number};
-      truth.flux[i] = {first.light, second.light};
-    }
-  });
-  truth.particles.reference_ambient_px = truth.reference_px;
-  truth.particles.displacement_ambient_px = truth.displacement_px;
-  return truth;
-}
-
 }  // namespace
 
 Image<double> draw_light(std::vector<ParticleImage> const& images, GaussianSpot<double> const& shape, int columns,
@@ -138,47 +96,6 @@ Image<double> draw_light(std::vector<ParticleImage> const& images, GaussianSpot<
   Bands const bands(images, rows, shape.half_width());
   parallel_for(bands.count(), [&](std::size_t band) { draw_band(bands[band], band, shape, light); });
   return light;
-}
-
-Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
-                              RenderImages images, ImageDrawer* drawer) {
-  keep_freed_memory();  // Retain freed memory: for successive pairs, page faults took a third of the time.
-  Scene const& scene = ideal.scene();
-  LightThroughLens const through_lens(scene, light);
-  IdealProjection const project = ideal.projection();
-  DefocusBlur const blur = ideal.blur();
-  std::array<std::vector<ParticleImage>, frames> spots;
-  for (std::size_t pulse = 0; pulse < frames; ++pulse) {
-    spots[pulse].resize(particles.size());
-    parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        double const photons = particles.photons[pulse][i];
-        if (!(photons > 0)) continue;
-        Vec3d const place = particles.place[pulse][i];
-        double const light = photons * through_lens(place, i, static_cast<int>(pulse));
-        spots[pulse][i] = {project(place), light, blur.width(place.z)};
-      }
-    });
-  }
-  Rendering rendering;
-  rendering.table = TableState::by_formula;
-  rendering.truth = truth_of(particles, spots);
-  if (images == RenderImages::no) return rendering;
-  double const unit = photon_unit(scene, particles, light);
-  for (auto& frame : spots) {
-    for (ParticleImage& spot : frame) spot.light /= unit;
-  }
-  GaussianSpot<double> const shape = find_widest(spots, blur.sigma);
-  CameraSetup const& camera = scene.setup.camera;
-  if (drawer) {
-    rendering.in_place = drawer->draw(spots, shape, camera.columns, camera.rows);
-    if (images == RenderImages::yes) rendering.light = std::exchange(rendering.in_place, nullptr)->to_host();
-    return rendering;
-  }
-  rendering.light = {draw_light(spots[0], shape, camera.columns, camera.rows),
-                     draw_light(spots[1], shape, camera.columns, camera.rows)};
-  if (images == RenderImages::in_place) rendering.store_light_in_place();
-  return rendering;
 }
 
 }  // namespace gladstone::inline ideal_images

@@ -1,8 +1,8 @@
+#include "render/files/hdf5_handle.h"
+
 #include <hdf5.h>
 
 #include <map>
-
-#include "render/files/hdf5_handle.h"
 
 namespace gladstone::inline files::hdf5 {
 namespace {

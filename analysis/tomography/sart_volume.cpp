@@ -1,7 +1,8 @@
+#include "analysis/tomography/sart_volume.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/tomography/sart_volume.h"
 #include "analysis/tomography/total_variation.h"
 
 namespace gladstone::inline tomography {

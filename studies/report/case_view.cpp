@@ -1,3 +1,5 @@
+#include "studies/report/case_view.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -5,7 +7,6 @@
 #include "analysis/errors/error_summary.h"
 #include "analysis/errors/uncertainty_quality.h"
 #include "studies/compare/uncorrected_bias.h"
-#include "studies/report/case_view.h"
 
 namespace gladstone::inline report {
 
@@ -95,6 +96,25 @@ std::vector<std::string> summarize_findings(CaseView const& view) {
   findings.push_back(uncertainty_statements(view).front());
   for (std::string const& warning : to_strings(all.warnings)) findings.push_back("Warning: " + warning + '.');
   return findings;
+}
+
+Chart budget_chart(std::string const& title, Figure figure, ErrorBudget const& budget) {
+  return {"budget", title, largest_term(budget), {{"", std::move(figure)}}};
+}
+
+TextTable budget_table(std::string const& title, ErrorBudget const& budget) {
+  TextTable table{title, {"cause", "bias u", "bias v", "scatter u", "scatter v", "rms"}, {}};
+  auto const add = [&](BudgetTerm const& term) {
+    table.rows.push_back({{term.name},
+                          TableCell::px(term.bias_u_px),
+                          TableCell::px(term.bias_v_px),
+                          TableCell::px(term.random_u_px),
+                          TableCell::px(term.random_v_px),
+                          TableCell::px(term.rms_px)});
+  };
+  for (BudgetTerm const& term : budget.terms) add(term);
+  add(budget.total);
+  return table;
 }
 
 }  // namespace gladstone::inline report

@@ -1,3 +1,5 @@
+#include "render/files/fields/readers/array_file.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,7 +14,6 @@
 #include "render/base/text.h"
 #include "render/files/fields/readers/array_axes.h"
 #include "render/files/fields/readers/array_coordinates.h"
-#include "render/files/fields/readers/array_file.h"
 #include "render/files/fields/readers/array_order.h"
 #include "render/files/fields/readers/only_field.h"
 #include "render/files/fields/readers/packing.h"

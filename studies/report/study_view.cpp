@@ -1,16 +1,26 @@
+#include "studies/report/study_view.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "analysis/errors/error_summary.h"
 #include "render/base/error.h"
+#include "studies/case/json_text.h"
 #include "studies/figures/study_axes.h"
-#include "studies/report/study_view.h"
 #include "studies/sweep/job_array.h"
 #include "studies/sweep/ranking.h"
 #include "studies/sweep/study_columns.h"
 
 namespace gladstone::inline report {
+namespace {
+
+constexpr std::size_t longest_plain_table = 20;  ///< maximum number of rows of a table without a search field
+
+}  // namespace
 
 StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
   for (StudyRow const& row : table.rows) {
@@ -146,6 +156,82 @@ std::string uncertainty_finding(StudyView const& study) {
   return fmt::format(
       "The estimated uncertainty covers {:.0f} % of the errors in the median case ({:.0f} to {:.0f} %; ideal: 68 %).",
       100 * quantile(coverage, 0.5), 100 * quantile(coverage, 0), 100 * quantile(coverage, 1));
+}
+
+nlohmann::json study_data(StudyView const& study) {
+  nlohmann::json data{{"main", study.main}};
+  if (study.knows("signal_px")) data["second"] = "signal_px";
+  data["axes"] = data["measures"] = data["rows"] = nlohmann::json::array();
+  std::vector<FigureAxis> axes;
+  for (StudyAxis const& axis : study.table.axes) {
+    axes.push_back(figure_axis(axis, std::max<std::size_t>(2, std::min(max_positions, axis.labels.size()))));
+    nlohmann::json numbers = nlohmann::json::array();
+    for (double const position : axes.back().position) numbers.push_back(number_or_null(position));
+    data["axes"].push_back({{"key", axis.key},
+                            {"title", axes.back().title},
+                            {"numeric", axes.back().numeric},
+                            {"logarithmic", axes.back().logarithmic},
+                            {"labels", axes.back().label},
+                            {"numbers", numbers}});
+  }
+  for (StudyColumn const& column : table_columns(study.table)) {
+    if (study.table.find_measure(column.name) && study.knows(column.name)) {
+      data["measures"].push_back({{"name", column.name}, {"unit", unit_of_column(column.name)}});
+    }
+  }
+  for (StudyRow const& row : study.table.rows) {
+    nlohmann::json one{{"case", row.index},
+                       {"status", to_string(row.status)},
+                       {"v", nlohmann::json::array()},
+                       {"m", nlohmann::json::array()}};
+    for (std::size_t k = 0; k < axes.size(); ++k) one["v"].push_back(axes[k].place_of[row.value[k]]);
+    for (auto const& measure : data["measures"]) {
+      one["m"].push_back(row.status == CaseStatus::ok
+                             ? number_or_null(study.of(row, measure["name"].get_ref<std::string const&>()))
+                             : nlohmann::json(nullptr));
+    }
+    data["rows"].push_back(std::move(one));
+  }
+  return data;
+}
+
+TextTable cases_table(StudyView const& study) {
+  TextTable table{
+      fmt::format("All cases; study.csv contains all {} measures", study.table.measures.size()), {"case"}, {}};
+  std::vector<std::string> measures;
+  for (char const* name :
+       {"ray_truth.rms_px", "eq9.rms_px", "flow.rms_px", "ray_truth.bias_u_px", "ray_truth.bias_v_px",
+        "ray_truth.random_u_px", "ray_truth.random_v_px", "ray_truth.gross_fraction", "ray_truth.valid_fraction",
+        "uncertainty.window_truth.coverage_1", "signal_px", "error_over_signal", "gradient_error_kg_m4"}) {
+    if (study.knows(name)) measures.emplace_back(name);
+  }
+  bool const repeated = study.table.repeats() > 1;
+  if (repeated) table.header.emplace_back("repeat");
+  for (StudyAxis const& axis : study.table.axes) table.header.push_back(axis_title(axis.key));
+  table.header.insert(table.header.end(), measures.begin(), measures.end());
+  table.header.emplace_back("status");
+  for (StudyRow const& row : study.table.rows) {
+    std::vector<TableCell> cells{{std::to_string(row.index), static_cast<double>(row.index)}};
+    if (repeated) cells.push_back({std::to_string(row.repeat), static_cast<double>(row.repeat)});
+    for (std::size_t k = 0; k < study.table.axes.size(); ++k) {
+      StudyAxis const& axis = study.table.axes[k];
+      TableCell cell{axis.labels[row.value[k]]};
+      if (axis.numeric && std::isfinite(axis.numbers[row.value[k]])) cell.number = axis.numbers[row.value[k]];
+      cells.push_back(std::move(cell));
+    }
+    for (std::string const& measure : measures) {
+      if (row.status != CaseStatus::ok) {
+        cells.push_back({""});
+        continue;
+      }
+      double const value = study.of(row, measure);
+      cells.push_back(measure.ends_with("_px") ? TableCell::px(value) : TableCell::of(value));
+    }
+    cells.push_back({row.error.empty() ? to_string(row.status) : row.error});
+    table.rows.push_back(std::move(cells));
+  }
+  table.filtered = table.rows.size() > longest_plain_table;
+  return table;
 }
 
 }  // namespace gladstone::inline report

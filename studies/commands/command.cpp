@@ -1,10 +1,11 @@
+#include "studies/commands/command.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "studies/case/json_text.h"
 #include "studies/case/warning_json.h"
-#include "studies/commands/command.h"
 #include "studies/commands/run_warnings.h"
 
 namespace gladstone::inline commands {
