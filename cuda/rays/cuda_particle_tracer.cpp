@@ -24,8 +24,8 @@ constexpr std::size_t most_batch_bytes = std::size_t{256} << 20, most_of_batch =
 /// Particles at both pulses, in host memory.
 using HostPulses = ParticleSources<double, AnyScattering>[frame_count];
 
-/// Traces a batch of particles on the device. The medium is also needed on the host, which computes the aims of
-/// particles whose rays the device cannot restrict to the stop.
+/// Traces a batch of particles on the device. The medium is also needed on the host, which determines the ray
+/// directions of particles whose rays the device cannot restrict to the stop.
 template <class Medium>
 class BatchPass {
  public:
@@ -259,9 +259,11 @@ class BatchPass {
   double across_medium_;
   unsigned long long* ends_;
   unsigned int counts_[LadderView::max_step_count + 1] = {};
-  std::vector<PulseAim> aims_;       ///< aims of the batch, if the host aims some of them
-  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for the aims set by the host
-  std::vector<std::uint32_t> wide_;  ///< indices of the aims set by the host
+  std::vector<PulseAim> aims_;       ///< ray directions of all particles of the batch; empty if the device determines
+                                     ///< all of them
+  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for the particles whose ray directions the host
+                                     ///< determines
+  std::vector<std::uint32_t> wide_;  ///< indices in aims_ of these particles
 };
 
 /// Returns the number of particles per batch, limited by memory and by the duration of a launch.
