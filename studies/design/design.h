@@ -17,12 +17,12 @@
 
 namespace gladstone::inline design {
 
-/// Request to `gladstone design`.
+/// Arguments of `gladstone design`.
 struct DesignRequest {
   std::string setup;
   std::vector<std::string> overrides;
   std::string apply;                     ///< file for the recommended setup; empty: not written
-  VerificationPlan verification;         ///< extent of the simulation; benches = 0: none
+  VerificationPlan verification;         ///< number of designs and repeats to simulate; benches = 0: no simulation
   std::function<Backend()> open_device;  ///< opens the device of the simulation
 };
 

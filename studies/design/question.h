@@ -50,7 +50,7 @@ struct Limit {
 /// Requirements on a design.
 struct Requirements {
   Objective objective = Objective::gradient_min;
-  std::vector<Limit> limits;  ///< of the given keys, in the order of requirements()
+  std::vector<Limit> limits;  ///< limits given by the user, in the order of requirements()
 };
 
 /// A design variable with its admissible values or interval, in SI.
@@ -66,7 +66,7 @@ struct InventoryCamera {
   SetupNode table;
 };
 
-/// Tables [requirements], [limits], [inventory] and [free] of a setup.
+/// A requested design: tables [requirements], [limits], [inventory] and [free] of a setup.
 struct DesignQuestion {
   Requirements requirements;
   std::vector<FreeChoice> free;
