@@ -36,7 +36,7 @@ struct UncertainInput {
 
 /// Replaces every number given with an uncertainty by its value, so that all readers find a plain number, and returns
 /// the uncertainties. Also removes and returns the correlations in [[correlations]], { keys = [.., ..], coefficient =
-/// -0.5 }. Problems are added to the document at the key concerned. Tables of a design question (requirements, limits,
+/// -0.5 }. Problems are added to the document at the key concerned. Tables that request a design (requirements, limits,
 /// ...) are not searched.
 std::vector<UncertainInput> extract_uncertain_inputs(SetupDocument& document);
 

@@ -74,7 +74,7 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
   if (report.uncertainty) report.text += uncertainty_text(*report.uncertainty);
 }
 
-/// Adds the answer to the design question.
+/// Adds the recommended design, and its verification.
 /// @param loaded  the setup as given
 void add_answer(DesignRequest const& request, SetupDocument const& document, DesignQuestion question,
                 CaseSetup const& loaded, std::optional<OutputFile>& applied, DesignReport& report) {

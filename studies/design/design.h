@@ -43,7 +43,7 @@ struct DesignReport {
 
 /// Computes the design sheet of a setup and, if it has [requirements], the recommended setup or the reasons why none
 /// exists. Writes the recommended setup.
-/// @throws SetupError with all problems of the setup and the question
+/// @throws SetupError with all problems of the setup and of the requested design
 /// @throws DataError if the design has no light cone, or for --apply without [requirements]
 /// @throws OutputError if a file cannot be written
 DesignReport answer_design(DesignRequest const& request);

@@ -74,7 +74,7 @@ struct DesignQuestion {
   std::vector<std::string> lenses;       ///< absolute paths of prescription files, in addition to the thin lenses
 };
 
-/// Reads the question; adds every problem to the document at its key.
+/// Reads the requested design; adds every problem to the document at its key.
 /// @return nullopt without a table [requirements]
 std::optional<DesignQuestion> read_design_question(SetupDocument& document);
 
