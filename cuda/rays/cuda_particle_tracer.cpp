@@ -90,7 +90,7 @@ class BatchPass {
  private:
   unsigned int counted(std::size_t step) const { return counts_[step]; }
 
-  /// Lists, by number of rays, the aims of the chosen particles whose rays fill the stop.
+  /// Lists, by number of rays, the chosen particles (with their pulse) whose rays fill the stop.
   void list(int const* at) {
     list_particles(on_device_.ladder(), batch_.aims().data(), at, batch_.steps(), batch_.count(),
                    batch_.listed(launches_.size()));
@@ -170,7 +170,7 @@ class BatchPass {
     trace_wider(wide_, steps.data());
   }
 
-  /// Traces aims whose rays are clipped at the stop, by the number of rays of their particles.
+  /// Traces particles whose rays are clipped at the stop, in groups of equal number of rays.
   void trace_wide(std::vector<std::uint32_t> const& aims, int const* step, double sign) {
     for (std::size_t here = 0; here < launches_.size(); ++here) {
       std::vector<std::uint32_t> some;

@@ -31,7 +31,7 @@ struct AnyScattering {
   }
 };
 
-/// State of the search for the directions in which a particle's rays are sent at one pulse.
+/// State of the search for the directions in which a particle's rays are sent at one laser pulse.
 enum class AimState : int {
   none,     ///< no rays: the particle is not illuminated, or no ray passes the stop
   filled,   ///< all rays fill the stop, and none is clipped there
@@ -39,7 +39,7 @@ enum class AimState : int {
   wide,     ///< the rays cover a disc around the stop and are clipped there
 };
 
-/// Directions of the rays of one particle at one pulse, and the expected position of their light.
+/// Directions of the rays of one particle at one laser pulse, and the expected position of their light.
 struct PulseAim {
   AimState state = AimState::none;
   AimMap seen, ambient;  ///< map from the unit disc to the entrance pupil, with and without the medium
@@ -47,14 +47,14 @@ struct PulseAim {
   double spread2 = 0;    ///< variance of the hits, as FilledStop::spread2 [px^2]
 };
 
-/// Numbers of rays among which that of each particle is chosen (RaysLadder), on the device.
+/// Sequence of ray numbers from which the number of rays of each particle is chosen (RaysLadder), on the device.
 struct LadderView {
   static constexpr int max_step_count = 16;  ///< maximum length of `rays`
 
   RequiredRayAccuracy goal;
   double light_per_photon = 0;  ///< light in the images per photon
   int steps = 1;
-  int first_clipped = 0;  ///< index in `rays` from which particles start whose rays are clipped at the stop
+  int first_clipped = 0;  ///< first index in `rays` for particles whose rays are clipped at the stop
   bool ruled = false;     ///< rays that fill the stop follow quadrature rules
   std::uint64_t rays[max_step_count] = {};
   int scrambling_bits[max_step_count] = {};
@@ -188,7 +188,8 @@ struct ParticleSteps {
                         ///< directions the host determines, or of particles that need more rays
 };
 
-/// Aims at the stop for both pulses of `count` particles, and determines the first step of RaysLadder of each.
+/// Determines the directions of the rays of `count` particles towards the stop at both laser pulses, and the first step
+/// of RaysLadder of each particle.
 /// @param stop  stop with its elements in device memory
 /// @param launch  launch of any step
 void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,

@@ -119,7 +119,8 @@ struct SquareRange {
   GLADSTONE_HD Vec2<int> square(int index) const { return {low.x + index % columns(), low.y + index / columns()}; }
 };
 
-/// The smallest squares of a dot of which its displacements cover no more than SquareRange::most, and their range.
+/// Squares of the smallest size for which the displacements of a dot cover at most SquareRange::most squares, and the
+/// range of these squares.
 struct SpannedSquares {
   DotSquares squares;
   SquareRange range;
