@@ -141,7 +141,7 @@ class BatchPass {
     trace_wider(chosen, steps.data() + count);
   }
 
-  /// Aims on the host those particles that the device could not aim, and traces them.
+  /// Determines on the host the ray directions that the device did not find, and traces these particles.
   void aim_wide() {
     std::size_t const count = batch_.count();
     aims_.resize(batch_.aims().size());
