@@ -144,7 +144,7 @@ Rendering Device::render_others(Scene const& scene, RenderPlan plan, DotPattern 
                                 RenderTheory theory) {
   if (!scene.setup.render.rays_per_dot) {
     if (images == RenderImages::no) {
-      plan.adaptive_criteria = AdaptiveRayCriteria{};  // of the truth alone
+      plan.adaptive_criteria = AdaptiveRayCriteria{};  // criteria for the truth alone, without images
     } else if (!plan.adaptive_criteria) {
       plan.adaptive_criteria = determine_adaptive_criteria(scene, plan);
     }

@@ -29,7 +29,8 @@ struct CalibrationPoints {
 /// Quadrature points on a disc, in units of its radius. The mean of a cubic polynomial over the four points equals its
 /// mean over the disc. The mean of the points' images is therefore the centroid of the dot image, whereas the image of
 /// the disc's centre is biased by perspective (Heikkila, IEEE PAMI 22 (2000) 1066).
-inline constexpr double disc_rule = 0.70710678118654752;  // r / sqrt(2) along each axis
+// distance of each point from the centre, in radii of the disc
+inline constexpr double disc_rule = 0.70710678118654752;
 inline constexpr std::array<Vec2d, 4> disc_points{{{disc_rule, 0}, {-disc_rule, 0}, {0, disc_rule}, {0, -disc_rule}}};
 
 }  // namespace gladstone::inline calibration

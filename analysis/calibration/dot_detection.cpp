@@ -15,7 +15,7 @@ namespace {
 
 // minimum standard deviation of the noise, assumed for images of integer grey levels, whose rounding may hide the noise
 constexpr double rounding = 0.5;
-constexpr int ring_px = 5;      // width of the ring in which the background is fitted
+constexpr int ring_px = 5;      // width of the ring around a dot in which the background is fitted [px]
 constexpr int least_ring = 24;  // minimum number of background pixels for a plane fit
 constexpr double wide = 3;  // radius of the region for a quadratic fit of the background, in outer radii of the ring
 // maximum error of a quadratic fit at a dot's centre, and maximum error that its slope causes across the window, both
@@ -59,7 +59,8 @@ LitPicture lit_picture(Image<double> const& picture) {
   if (lit.dots == Dots::dark) {
     for (double& level : over) level = -level;
   }
-  lit.noise = 1.4826 * median_size(over);  // standard deviation of normal noise from the median
+  // for normally distributed noise, 1.4826 times the median magnitude is the standard deviation
+  lit.noise = 1.4826 * median_size(over);
   // If all grey levels are integers, rounding may hide all noise.
   if (std::all_of(picture.begin(), picture.end(), [](double level) { return level == std::floor(level); })) {
     lit.noise = std::max(lit.noise, rounding);

@@ -19,7 +19,7 @@ constexpr double axes_factor = 1.5;  // maximum ratio of a region's axis ratio t
 // minimum ratio of a region's area to that of the ellipse of its second moments
 constexpr double least_fill = 0.9;
 
-/// Size and shape of a region above half its height.
+/// Size and shape of the part of a region that exceeds half the region's peak height.
 struct Shape {
   Vec2d centre;
   double area, fill, axes;

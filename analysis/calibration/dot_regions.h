@@ -14,7 +14,7 @@ inline constexpr double dot_smoothing_px = 0.8;
 /// Connected region of an image with the size and shape of a dot.
 struct DotRegion {
   Vec2d centre{};     ///< centre of the region in which the level exceeds half the dot's peak height [px]
-  double radius = 0;  ///< radius of a disc with the same area as that region [px]
+  double radius = 0;  ///< radius of a disc of the same area as the region above half the peak height [px]
   double window = 0;  ///< radius of the window in which the centroid is computed [px]
 };
 

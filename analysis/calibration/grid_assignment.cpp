@@ -60,7 +60,7 @@ double median(std::vector<double> values) {
 /// Chooses the start among the dots nearest to the centroid: the dot whose steps are closest to the median steps, which
 /// is robust to missing neighbours and spurious spots.
 std::optional<Beginning> begin(std::vector<DetectedDot> const& dots, ExpectedView const& expected) {
-  constexpr std::size_t most = 25;  // maximum number of dots that are examined: five by five
+  constexpr std::size_t most = 25;  // maximum number of dots that are examined, as in a square of five by five
   Vec2d middle{};
   for (DetectedDot const& dot : dots) middle += dot.centre_px / static_cast<double>(dots.size());
   std::vector<std::size_t> order(dots.size());

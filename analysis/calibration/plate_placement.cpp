@@ -136,7 +136,8 @@ void shift_to_smallest(Moves& moves) {
     for (std::array<int, 2> const& by : moves) sorted.push_back(by[axis]);
     std::sort(sorted.begin(), sorted.end());
     int const low = sorted[(sorted.size() - 1) / 2], high = sorted[sorted.size() / 2];
-    int const shift = std::clamp(0, low, high);  // every value between the two medians is optimal
+    // every value from `low` to `high` minimises the sum; that nearest to zero is chosen
+    int const shift = std::clamp(0, low, high);
     for (std::array<int, 2>& by : moves) by[axis] -= shift;
   }
 }

@@ -13,7 +13,8 @@ namespace gladstone::inline calibration {
 /// of the dots. With two planes, the terms in Z^2 are omitted.
 struct SoloffPolynomial {
   std::vector<std::array<int, 3>> exponents;  ///< exponents of X, Y, Z
-  std::vector<Vec2d> coefficients;            ///< [px / m^(sum of the exponents)]
+  std::vector<Vec2d> coefficients;            ///< coefficients of the terms for column and row [px / m^(sum of the
+                                              ///< exponents)]
 };
 
 struct SoloffFit {

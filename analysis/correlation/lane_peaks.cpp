@@ -193,8 +193,8 @@ PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
   std::fill_n(heights_[lane].data() + counts_[lane], lane_count, 0.0f);
   PeakList<float> found;
   for (float least = third_highest(lane);; least = 0.0f) {
-    float const enough = static_cast<float>(ambiguous_height_ratio) *
-                         least;  // lower limit that also includes the candidates of prefer_nearest()
+    // lower limit of the height, such that the candidates of prefer_nearest() are also found
+    float const enough = static_cast<float>(ambiguous_height_ratio) * least;
     found = {};
     refined_.clear();
     visit_high(lane, enough / static_cast<float>(largest_rise), [&](PlanePeak<float> const& peak) {

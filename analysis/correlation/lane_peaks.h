@@ -32,8 +32,9 @@ class LanePeaks {
 
   InterrogationJob const& job_;
   bool decreases_with_shift_;
-  std::vector<FloatLanes> highest_[3];  // [above, here, below][column] highest of three neighbours in a row
-  std::vector<unsigned char> found_;    // maxima in a row: one byte per column with one bit per lane
+  // [above, here, below][column] highest of three adjacent values in a row of the plane, for three successive rows
+  std::vector<FloatLanes> highest_[3];
+  std::vector<unsigned char> found_;  // maxima in a row: one byte per column with one bit per lane
   int counts_[lane_count] = {};
   std::vector<PlanePeak<float>> maxima_[lane_count];  // maxima of each lane, in reading order
   std::vector<float> heights_[lane_count];            // heights of maxima_, followed by zeros

@@ -74,7 +74,7 @@ class LaneWindows {
   int column_[lane_count], row_[lane_count];
   WindowCorrelation::Outcome outcome_[lane_count];
   FloatLanes mean_reference_, mean_flow_, reference_, flow_, core_reference_, core_flow_;
-  std::vector<FloatLanes> weight_x_, weight_y_;  // weight_x_ includes the margin
+  std::vector<FloatLanes> weight_x_, weight_y_;  // weights of the columns, including the margin, and of the rows
   // true: weight_x_ and weight_y_ contain the weights of windows inside the image
   bool gathered_ = false;
   std::vector<float> patch_[lane_count];

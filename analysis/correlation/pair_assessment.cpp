@@ -121,7 +121,7 @@ struct Reach {
     remedy = limited ? "increase it" : "use a larger first window in correlate.window_px";
   }
   std::string what;
-  std::string remedy;  ///< suggestion for a larger range
+  std::string remedy;  ///< change of the settings that enlarges the search range
 };
 
 std::string uncorrelated_text(Tally const& tally, Reach const& reach) {

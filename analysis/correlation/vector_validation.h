@@ -282,7 +282,7 @@ GLADSTONE_HD inline int validation_stage_count(ValidationRule const& rule) {
   return rule.displacement_threshold < std::numeric_limits<double>::infinity() ? 2 : 1;
 }
 
-/// Replacement of a spurious vector: its value and origin.
+/// Replacement of a spurious vector: its value, and how it was determined.
 struct VectorReplacement {
   Vec2d value;
   VectorReason reason;

@@ -120,7 +120,7 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
   double const range = all.low <= all.high ? all.high - all.low : 0.0;
   if (!(range * scale <= 2.0 * most_beyond) || (range > 0.0 && range * scale < 1.0)) scale = take_all(scale_of(range));
   pair.contrast = static_cast<float>(range * scale);
-  // middle of the full range, relative to the subtracted level
+  // grey level in the middle of the full range, after subtraction of `level` and multiplication by `scale`
   float const middle = range > 0.0 ? static_cast<float>((0.5 * (all.low + all.high) - level) * scale) : 0.0f;
   if (all.gaps) fill_gaps(pair, reference, flow, middle);
   return pair;

@@ -43,7 +43,7 @@ class DensePredictor {
  private:
   InterrogationGrid grid_;
   int ghosts_;
-  int columns_;  // including the ghost nodes
+  int columns_;  // number of columns of nodes, including the ghost nodes
   int rows_;
   std::vector<Vec2d> nodes_;
   std::vector<int> column_first_;         // [image column] first of the four nodes

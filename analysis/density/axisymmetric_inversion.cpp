@@ -36,8 +36,8 @@ void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings co
                     "cross-validation, or give lambda");
 }
 
-/// Returns the smallest radius whose density a row determines, up to RadialProfile::last_measured(): without
-/// regularisation all radii between are measured, with it the smallest of them is.
+/// Returns the index of the smallest radius at which a row determines the density. Without regularisation, all radii
+/// from it to RadialProfile::last_measured() must be measured; with regularisation, it is the smallest measured radius.
 int find_first_radius(RadialProfile const& profile, bool regularized) {
   int const last = profile.last_measured();
   int first = last;

@@ -72,7 +72,7 @@ struct DensityIntegrator::System {
   std::vector<std::uint8_t> determined, is_reference;
   /// Index of the unknown of every node; not_unknown: reference node or undetermined node.
   std::vector<int> unknown;
-  std::vector<std::size_t> node;            ///< index of the node of every unknown
+  std::vector<std::size_t> node;            ///< index of the grid node of every unknown
   std::vector<LineDifference> differences;  ///< difference equations of the determined nodes
   std::vector<double> weight;               ///< weight of every difference equation
   std::optional<NormalEquations> equations;

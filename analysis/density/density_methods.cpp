@@ -11,7 +11,8 @@
 namespace gladstone::inline density {
 namespace {
 
-/// Rajendran, Zhang, Bane & Vlachos, Exp. Fluids 61 (2020) 239.
+/// Weights a difference equation by the reciprocal of its variance: Rajendran, Zhang, Bane & Vlachos, Exp. Fluids 61
+/// (2020) 239.
 double weigh_by_variance(LineDifference const& difference, GradientMap const& map) {
   return 1.0 / compute_variance(difference, map.sigma);
 }
@@ -45,7 +46,7 @@ double determine_lambda(Eigen::MatrixXd const& projection, std::vector<RadialPro
   return choose_regularization(projection, chosen, settings.choice);
 }
 
-/// make_gradient_inversion(): fourth order, noise grows towards the axis.
+/// Prepares the fourth-order inversion of make_gradient_inversion(), whose noise increases towards the axis.
 AbelInversion prepare_direct(int radii, std::vector<RadialProfile> const&, AxisymmetricSettings const&) {
   return {0.0, [inversion = make_gradient_inversion(radii)](RadialProfile const&) { return inversion; }};
 }

@@ -18,8 +18,8 @@ struct AxisymmetricSettings;
 /// - line integral of the gradient)^2.
 struct IntegrationMethod {
   char const* name;
-  char const* meaning;           ///< in the help of commands
-  std::optional<EdgeRule> rule;  ///< of the line integrals; nullopt: IntegrationSettings::rule
+  char const* meaning;           ///< explanation of the method in the help of commands
+  std::optional<EdgeRule> rule;  ///< quadrature rule of the line integrals; nullopt: IntegrationSettings::rule
   double (*weight)(LineDifference const& difference, GradientMap const& map);
 };
 
@@ -33,7 +33,7 @@ struct AbelInversion {
 /// Method of an Abel inversion.
 struct AbelMethod {
   char const* name;
-  char const* meaning;  ///< in the help of commands
+  char const* meaning;  ///< explanation of the method in the help of commands
   /// Whether it has a regularisation parameter, and determines the density also at radii without a gradient.
   bool regularized;
   AbelInversion (*prepare)(int radii, std::vector<RadialProfile> const& profiles, AxisymmetricSettings const& settings);

@@ -15,7 +15,7 @@ inline double BesselJ1(double x) { return ::j1(x); }
 template <class T>
 T disc_transfer(T diameter, T wavelength) {
   T const x = pi * diameter / wavelength;
-  if (x < 1e-4) return 1.0 - x * x / 8.0;  // series truncated at an error of x^4 / 192
+  if (x < 1e-4) return 1.0 - x * x / 8.0;  // the first omitted term of the series is x^4 / 192
   return 2.0 * BesselJ1(x) / x;
 }
 

@@ -13,7 +13,7 @@
 namespace gladstone::inline density {
 namespace {
 
-using Weights = std::vector<std::pair<int, double>>;  ///< columns and their weights
+using Weights = std::vector<std::pair<int, double>>;  ///< columns of nodes, with their interpolation weights
 
 /// Returns the interpolation weights at a position in a row [columns]; nullopt if a neighbouring node is invalid or
 /// outside the grid.

@@ -91,7 +91,7 @@ double choose_regularization(Eigen::MatrixXd const& projection, std::span<Radial
     return std::exp(0.5 * (low + high));
   }
   double best = low, best_score = 0.0;
-  for (int i = 0; i <= 24; ++i) {  // a factor of 3.2 per step
+  for (int i = 0; i <= 24; ++i) {  // lambda increases by a factor of 3.2 per step
     double const logarithm = low + (high - low) * i / 24;
     FitQuality const quality = evaluate_fit(projection, profiles, std::exp(logarithm));
     double const freedom = 1.0 - quality.effective_parameters / quality.count;

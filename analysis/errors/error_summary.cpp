@@ -22,7 +22,7 @@ double deviation(ErrorSample const& errors, double Vec2d::*component) {
   double const centre = mean(errors, component);
   double sum = 0.0;
   for (Vec2d const& e : errors.error_px) sum += (e.*component - centre) * (e.*component - centre);
-  return std::sqrt(sum / static_cast<double>(errors.error_px.size()));  // 0/0 is NaN for no vectors
+  return std::sqrt(sum / static_cast<double>(errors.error_px.size()));  // NaN (0/0) if there are no vectors
 }
 
 double rms(ErrorSample const& errors, double largest) {

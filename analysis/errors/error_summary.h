@@ -34,8 +34,8 @@ struct ErrorMeasure {
   std::string_view name;  ///< with its unit as suffix: key in errors.json, study.csv and benchmark.csv
   double (*compute)(ErrorSample const&);
   char const* heading = nullptr;  ///< column of the printed table; null: not in it
-  bool of_case = true;            ///< one of error_measures()
-  bool of_benchmark = true;       ///< one of the numbers of a BenchmarkScore
+  bool of_case = true;            ///< true: error_measures() contains it
+  bool of_benchmark = true;       ///< true: a BenchmarkScore contains it
 };
 
 /// Returns all error measures, in the order of their output:
@@ -61,7 +61,7 @@ class ErrorSummary {
   /// Return the value of a measure. @pre the name is that of an error measure
   double operator[](std::string_view name) const;
   double& operator[](std::string_view name);
-  /// Returns a number of vectors. @param name  "count" or "gross"
+  /// Returns the number of vectors that are counted or have gross errors. @param name  "count" or "gross"
   std::size_t count(std::string_view name = "count") const { return static_cast<std::size_t>((*this)[name]); }
   /// Returns the names and values of the selected measures.
   std::vector<std::pair<std::string_view, double>> values(bool ErrorMeasure::*selected) const;

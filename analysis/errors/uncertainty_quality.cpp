@@ -57,7 +57,7 @@ UncertaintyQuality uncertainty_quality(std::span<Vec2d const> measured, std::spa
   quality.count = static_cast<std::size_t>(n);
   quality.gross = left_out.gross;
   quality.without_sigma = left_out.without_sigma;
-  quality.coverage_1 = within_1 / n;  // 0/0 is NaN for no components
+  quality.coverage_1 = within_1 / n;  // NaN (0/0) if there are no components
   quality.coverage_2 = within_2 / n;
   quality.rms_ratio = std::sqrt(ss / ee);
   quality.correlation = (n * es - e * s) / std::sqrt((n * ee - e * e) * (n * ss - s * s));

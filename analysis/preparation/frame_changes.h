@@ -29,7 +29,7 @@ FrameChange make_background_subtraction(std::string const& statistic, std::vecto
                                         std::vector<std::string> const& flow);
 /// Subtracts the background of a sequence, which is computed before the first pair is prepared.
 FrameChange make_background_subtraction(std::shared_ptr<SequenceBackground const> const& background);
-/// Subtracts a Gaussian average of standard deviation `sigma_px`.
+/// Subtracts from each frame its local mean, weighted by a Gaussian of standard deviation `sigma_px` [px].
 FrameChange make_high_pass(double sigma_px);
 /// Applies OpenCV's contrast-limited adaptive histogram equalisation (Zuiderveld, in Graphics Gems IV (1994) 474) over
 /// tiles of `tile_px`. Histogram bins are clipped at `clip_limit` times their mean.

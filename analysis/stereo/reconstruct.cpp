@@ -62,7 +62,8 @@ Covariance pack(Eigen::Matrix3d const& matrix) {
 
 /// Derivatives of a camera's two residuals, measured minus projected, with respect to its parameters.
 Eigen::Matrix<double, 2, parameter_count> differentiate_residual(View const& view, Vec3d at, Vec3d moved) {
-  constexpr double step_fraction = 1e-3;  // step relative to the standard error, small enough for a linear response
+  // step of the finite differences relative to the parameter's standard error, small enough for a linear response
+  constexpr double step_fraction = 1e-3;
   Eigen::Matrix<double, 2, parameter_count> derivative = Eigen::Matrix<double, 2, parameter_count>::Zero();
   PinholeCamera const& nominal = view.calibration->camera;
   std::vector<double> const& covariance = view.calibration->covariance;

@@ -19,7 +19,8 @@ Eigen::Matrix3d find_rotation(PinholeCamera const& camera) {
 /// to this pixel.
 std::optional<Vec2d> undistort(PinholeCamera camera, Vec2d pixel) {
   constexpr int max_iterations = 50;
-  constexpr double tolerance = 1e-13, step = 1e-6;  // both in units of the distance to the image plane
+  // tolerance, and step of the finite differences, of coordinates in the plane at unit distance from the camera
+  constexpr double tolerance = 1e-13, step = 1e-6;
   std::fill(camera.value.begin() + 8, camera.value.end(), 0.0);
   auto const image = [&](Vec2d at) { return camera.project({at.x, at.y, 1.0}); };
   Vec2d at{(pixel.x - camera.cx()) / camera.fx(), (pixel.y - camera.cy()) / camera.fy()};

@@ -42,7 +42,8 @@ Image<double> filtered(Image<double> const& levels, double sigma) {
 /// Returns the factor by which the filter reduces the standard deviation of uncorrelated noise.
 double noise_reduction(double sigma) {
   cv::Mat const kernel = cv::getGaussianKernel(filter_side(sigma), sigma, CV_64F);
-  return kernel.dot(kernel);  // equals the root of the sum of squares of the two-dimensional kernel
+  // for a separable kernel, equals the root of the sum of squares of the two-dimensional kernel
+  return kernel.dot(kernel);
 }
 
 /// Returns the offset of the vertex of the parabola through three levels, at most half a pixel.

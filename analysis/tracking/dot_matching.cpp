@@ -27,7 +27,7 @@ struct Round {
   std::vector<Vec2d> prediction;  ///< displacement of each dot of frame A [px]
   double radius;                  ///< largest deviation of a match from its prediction [px]
   double range;                   ///< largest deviation of the alternatives that can make a match ambiguous [px]
-  double tolerance;               ///< standard deviation of neighbours' displacements [px]
+  double tolerance;               ///< standard deviation of the displacements of neighbouring dots [px]
 };
 
 class DotMatcher {
@@ -208,7 +208,7 @@ class DotMatcher {
   std::span<Vec2d const> a_, b_;
   MatchSettings settings_;
   NearestPoints cells_a_, cells_b_;
-  double radius_, tolerance_;  // radius and tolerance of the search [px]
+  double radius_, tolerance_;  // search radius, and standard deviation of the displacements of neighbouring dots [px]
   TrackEvidence tracks_;
   std::vector<std::vector<std::size_t>> around_;  // nearest dots of each dot of frame A
 };

@@ -41,7 +41,8 @@ struct MatchSettings {
   /// Standard deviation of the displacements of neighbouring dots [px]; 0: 0.15 spacings.
   double tolerance_px = 0;
   double least_support = 0.35;  ///< smallest support of a match [1]
-  /// Ratio of another displacement's support to that of the best displacement, from which a match is ambiguous [1].
+  /// Smallest ratio of another displacement's support to that of the best displacement at which a match is ambiguous
+  /// [1].
   double ambiguity_ratio = 0.75;
   OutlierTest outliers;
 };

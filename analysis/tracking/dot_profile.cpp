@@ -12,7 +12,7 @@ namespace {
 constexpr int size = static_cast<int>(DotProfile::count);
 constexpr double least_f_ratio = 6;
 constexpr double usual_misfit = 3;  // largest ratio of a dot's residual to the median of all dots' residuals
-constexpr int rounds = 4;           // number of times that dots with usual residuals are selected
+constexpr int rounds = 4;           // number of iterations, each of which selects the dots with usual residuals again
 // minimum rms misfit of the Gaussian for which it is replaced by another profile, relative to the light
 constexpr double least_misfit = 0.005;
 constexpr double ridge = 1e-9;  // regularisation of the shares towards zero, relative to the mean diagonal of

@@ -101,7 +101,7 @@ class DotLight {
   /// One Gaussian of the profile.
   struct Part {
     double share, scale;
-    std::size_t first;  ///< index of the first factor of this Gaussian
+    std::size_t first;  ///< index in factors_ of the first factor of this Gaussian
   };
 
   /// Values at the edge between two columns or rows.

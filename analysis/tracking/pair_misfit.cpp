@@ -33,7 +33,8 @@ class ResidualDifference {
   /// pixels [px].
   Vec2d centre() const { return 0.5 * (in_a_.image.centre + in_b_.image.centre - Vec2d{1.0 * dx_, 1.0 * dy_}); }
 
-  /// Returns the difference [1]; NaN outside of either frame.
+  /// Returns the difference of the residuals at a pixel of frame A, relative to the noise [1]; NaN if either frame
+  /// lacks the pixel.
   double at(int column, int row) const {
     if (!inside(a_.residual, column, row) || !inside(b_.residual, column + dx_, row + dy_)) return not_a_number;
     double const in_a = a_.residual(column, row) - in_a_.background;
@@ -76,10 +77,9 @@ PairMisfit measure_pair_misfit(LocatedDots const& a, LocatedDots const& b, Locat
 /// few pixels.
 void pool_misfits(std::vector<PairMisfit>& misfits) {
   std::vector<double> means;
+  // divisor: ratio of the median of a chi2 distribution to its mean
   for (PairMisfit const& one : misfits)
-    if (one.freedom > 0)
-      means.push_back(one.mean / std::pow(1 - 2 / (9 * one.freedom), 3));  // ratio of mean to median
-                                                                           // of a chi2 distribution
+    if (one.freedom > 0) means.push_back(one.mean / std::pow(1 - 2 / (9 * one.freedom), 3));
   if (means.empty()) return;
   double const typical = upper_median(std::move(means));
   for (PairMisfit& one : misfits)

@@ -19,7 +19,7 @@ constexpr double least_excess = 0.5;
 constexpr double significance = 4;     // smallest significant excess of the variance, in standard errors of the median
 constexpr double median_error = 2.33;  // standard error of the median of n values of chi2, times sqrt(n) / median
 
-/// Returns the median of square / variance(sample).
+/// Returns the median of the squared residuals of all samples, each divided by variance(sample).
 template <class Variance>
 double median_ratio(std::span<ResidualSample const> samples, Variance const& variance) {
   std::vector<double> ratio;
@@ -27,8 +27,8 @@ double median_ratio(std::span<ResidualSample const> samples, Variance const& var
   return upper_median(std::move(ratio));
 }
 
-/// Returns the smallest x >= 0 for which the median of square / variance(x, sample) is at most the median of chi2. The
-/// variance must increase with x.
+/// Returns the smallest x >= 0 at which the squared residuals divided by variance(x, sample) have at most the median of
+/// chi2. The variance must increase with x.
 template <class Variance>
 double match_median(std::span<ResidualSample const> samples, Variance const& variance) {
   auto const exceeds = [&](double x) {

@@ -42,7 +42,7 @@ struct ProbableMistake {
   std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words correct it
   ConventionFit corrected_fit{};  ///< fit of the vectors after correction of the mistake
   ConventionFit as_read{};        ///< fit of the vectors as the format defines them, without correction
-  VectorCorrection correction{};  ///< correction of the file's numbers that undoes the mistake
+  VectorCorrection correction{};  ///< correction of the file's numbers that removes the mistake
 
   bool found() const { return !text.empty(); }
   /// Returns a warning that contains the text, both rms differences and the remedy.

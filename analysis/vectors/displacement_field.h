@@ -56,7 +56,7 @@ struct DisplacementField {
   std::vector<VectorStatus> status;  ///< validity of each vector; empty: all valid
   std::vector<Vec2d> raw_px;         ///< displacement before replacement [px]; NaN or empty: none
   std::vector<double> correlation;   ///< correlation coefficient of the peak at raw_px [1]; NaN or empty: none
-  std::vector<VectorReason> reason;  ///< origin or reason of each vector; empty: not recorded
+  std::vector<VectorReason> reason;  ///< source of each displacement, or why it is missing; empty: not recorded
   std::vector<FailedTest> failed;    ///< validation test that each vector failed; empty: not recorded
   std::vector<Ambiguity> ambiguous;  ///< ambiguity of each vector; empty: not recorded
   /// Number of columns of the grid, whose vectors are stored row by row; 0: scattered points.

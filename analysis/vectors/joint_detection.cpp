@@ -17,7 +17,7 @@ using Verdict = DetectedConventions::Verdict;
 struct Sample {
   VectorsWithTruth const* of;
   DisplacementField few;
-  double most;  ///< upper limit of a difference, see fit_within()
+  double most;  ///< upper limit of the difference between a vector and the truth [px], see fit_within()
   ConventionFit as_read;
 
   ConventionFit fit(VectorConventions const& conventions, VectorCorrection const& correction = {}) const {

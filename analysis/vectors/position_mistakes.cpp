@@ -31,7 +31,8 @@ struct FittedShift {
 /// are finite differences. The standard errors assume that neighbouring windows overlap by half, as
 /// log_likelihood_statistic().
 FittedShift refine_shift(Search const& search, FittedShift fitted) {
-  constexpr double h = 0.5, farthest = 1.0;  // step of the differences, and distance from the first estimate [px]
+  // step of the finite differences, and largest distance of the refined shift from the first estimate [px]
+  constexpr double h = 0.5, farthest = 1.0;
   double components = 1.0;
   auto const mean_square = [&](double dx, double dy) {
     ConventionFit const fit = search.fit(search.few, shift_by(fitted.shift_px + Vec2d{dx, dy}));
@@ -66,7 +67,8 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
   return fitted;
 }
 
-/// Describes the shift of the positions that `fitted` undoes, as far as the displacement determines it.
+/// Describes the shift of the file's positions that the correction `fitted` removes, and names a component that the
+/// displacement does not determine.
 std::string describe_shift(FittedShift const& fitted) {
   auto const digit = [](double uncertainty) { return uncertainty < 0.1 ? 0.01 : 0.1; };  // last digit [px]
   auto const rounded = [&](double value, double uncertainty) {

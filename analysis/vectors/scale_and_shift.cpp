@@ -90,7 +90,7 @@ ProbableMistake find_factor(Search const& search) {
 
 /// Searches for a constant that is added to all displacements.
 ProbableMistake find_offset(Search const& search) {
-  if (is_zero(search.few)) return {};  // an offset alone would explain zero vectors in a uniform displacement
+  if (is_zero(search.few)) return {};  // otherwise an offset would explain zero vectors in a uniform displacement
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
   Vec2d offset{};
   for (auto const component : {&Vec2d::x, &Vec2d::y}) {

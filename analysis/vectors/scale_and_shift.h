@@ -22,7 +22,7 @@ struct Search {
   DisplacementField const& few;  ///< sample of the file's vectors
   Truth const& truth;
   int image_rows;
-  double most;  ///< upper limit of a difference, see fit_within()
+  double most;  ///< upper limit of the difference between a vector and the truth [px], see fit_within()
   ConventionFit own;
 
   /// Returns the fit of `field`, a part of `few`, after a correction.

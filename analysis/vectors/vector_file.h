@@ -21,8 +21,8 @@ struct VectorFile {
   std::vector<VectorConventions> also{};  ///< alternative conventions of the program that writes the format
   std::string place_unit{};               ///< unit of the positions as stated in the file; empty: px
   std::string displacement_unit{};        ///< unit of the displacements as stated in the file; empty: px
-  Warnings warnings{};                    ///< about assumptions and ignored parts of the file
-  std::vector<std::string> notes{};       ///< about columns that are not used
+  Warnings warnings{};                    ///< warnings about assumptions and ignored parts of the file
+  std::vector<std::string> notes{};       ///< remarks about columns that are not used
   bool complete = true;                   ///< false: the header declares another number of vectors; see `warnings`
 };
 

@@ -115,7 +115,7 @@ void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, floa
 /// Measures the subpixel positions of the peaks by three points along each axis (gauss3) or by nine points (gauss2d).
 void measure_peaks(WindowJob const& job, WindowPeaks const* peaks, bool nine_points, WindowCorrelation* results);
 
-/// Vector or node to be replaced.
+/// Vector, or node of the predictor, to be replaced.
 struct Replacement {
   int index;
   FailedTest failed;

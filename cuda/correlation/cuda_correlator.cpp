@@ -119,7 +119,7 @@ class CorrelationPlan {
     vectors_ = DeviceArray<GridVector>(most_vectors, purpose);
     for (DeviceArray<char>& flags : ambiguous_) flags = DeviceArray<char>(most_vectors, purpose);
     measured_ = DeviceArray<MeasuredVector>(passes_.back().grid.size(), purpose);
-    measured_.zero();  // padding bytes are copied to the host as well
+    measured_.zero();  // initialise the padding bytes, which are copied to the host as well
     list_ = DeviceArray<Replacement>(most_vectors, purpose);
     if (with_sigma_)
       for (DeviceArray<Vec2d>* of_vectors : {&variances_, &sigma_})

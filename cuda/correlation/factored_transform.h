@@ -49,8 +49,8 @@ struct FactoredTransform {
   int line = thread % size;
   int group = thread / size;
 
-  /// First memory row of the joined lines, each of which holds two rows of the plane; after the window if its own rows
-  /// do not suffice.
+  /// Row of the memory at which the joined lines begin, each with two rows of the plane. They are stored behind the
+  /// window if its own rows do not suffice.
   GLADSTONE_HD static constexpr int first_joined(int radius) { return 3 * radius + 5 < size ? radius + 3 : size; }
   GLADSTONE_HD static constexpr int joined(int radius) { return radius + 2; }
   static constexpr int values(int radius) {

@@ -90,7 +90,7 @@ __device__ void share_taps(float const* taps, int count, float (&shared)[most_ta
 }
 
 constexpr int row_run = 4;
-constexpr int row_part = threads * row_run;  // part of a row filtered by a block
+constexpr int row_part = threads * row_run;  // number of pixels of a row that a block filters
 
 /// Filters rows, continued by reflection at their ends. Unknown pixels count as 0.
 __global__ void __launch_bounds__(threads)

@@ -69,7 +69,7 @@ inline __device__ RankedPeak ranked_peak(float height, int x, int y) {
   return {__float_as_uint(height), ~static_cast<unsigned>((y + 128) * 256 + x + 128)};
 }
 
-/// The two highest maxima found by a lane.
+/// The two highest maxima found by a lane of a warp.
 struct LanePeaks {
   RankedPeak first, second;
   int count = 0;  ///< number of all maxima found

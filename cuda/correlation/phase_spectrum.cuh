@@ -8,7 +8,8 @@ namespace gladstone::cuda::inline correlation {
 struct PhaseSpectrum {
   float const* particles;  ///< spectrum of particle images along one axis
   __device__ Complex operator()(Complex c, int kx, int ky) const {
-    if (kx == 0 && ky == 0) return {0.0f, 0.0f};  // rounding error, since windows have zero mean
+    // The value at zero frequency is rounding error, since windows have zero mean.
+    if (kx == 0 && ky == 0) return {0.0f, 0.0f};
     float const to = particles[kx] * particles[ky] / (sqrtf(c.re * c.re + c.im * c.im) + 1e-30f);
     return {to * c.re, to * c.im};
   }

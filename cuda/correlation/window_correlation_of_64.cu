@@ -55,7 +55,7 @@ __device__ void warp_sums(float (&value)[count], float* slots) {
   if (lane % (32 / count) == 0) slots[lane / (32 / count)] = value[0];
 }
 
-/// Sums the slots of all warps, in every thread. @param slots  [warp][count]
+/// Adds up the partial sums of all warps, in every thread. @param slots  partial sums, [warp][count]
 template <int count>
 __device__ void sum_slots(float const* slots, float (&value)[count]) {
 #pragma unroll

@@ -11,7 +11,8 @@ __device__ inline void write_no_result(WindowCorrelation::Outcome why, WindowPea
   peaks.outcome = why;
   peaks.count = 0;
   peaks.scale = 0.0;
-  for (PeakSample& sample : peaks.peak) sample = {};  // measure_peaks() also reads the heights of absent peaks
+  // Clear the samples of all peaks, so that none is uninitialised memory.
+  for (PeakSample& sample : peaks.peak) sample = {};
 }
 
 /// Writes peaks with their surrounding samples. Called by one full warp. @param peak  the k-th peak in lane k < count

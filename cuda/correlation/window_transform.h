@@ -27,7 +27,7 @@ struct WindowTransform {
   static constexpr int pitch = 72;
   static constexpr int values = size * pitch;
   static constexpr int upper = 32 * pitch;         ///< offset of the upper half of the memory
-  static constexpr int plane_pitch = 73;           ///< stride of the plane in the upper half; odd for SearchBlock
+  static constexpr int plane_pitch = 73;           ///< row stride of the plane in the upper half; odd for SearchBlock
   static constexpr int largest_radius = size / 4;  ///< largest search radius; shifts up to one more are valid
 
   struct alignas(16) ComplexPair {

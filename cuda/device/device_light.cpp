@@ -22,7 +22,7 @@ class CopyToHost {
   CopyToHost(CopyToHost const&) = delete;
   CopyToHost& operator=(CopyToHost const&) = delete;
   ~CopyToHost() {
-    cudaEventSynchronize(done_);  // the memory must not be written after destruction
+    cudaEventSynchronize(done_);  // the copy must not write to the memory after its release
     cudaEventDestroy(done_);
   }
   /// Waits for the copy and returns the values.

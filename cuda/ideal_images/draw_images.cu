@@ -41,12 +41,13 @@ __global__ void order_kernel(TileLists const lists) {
 template <int most_edges>
 struct Chunk {
   double at[2][chunk];     ///< position [px]
-  double first[2][chunk];  ///< first pixel of the footprint
+  double first[2][chunk];  ///< first column (axis 0) and row (axis 1) of the footprint
   double light[chunk];
   double per_sigma[chunk];  ///< reciprocal of the standard deviation [1/px]
-  int edge[2][chunk];       ///< first edge of the footprint that is computed
+  int edge[2][chunk];       ///< number of the first computed edge of the footprint
   double integral[2][chunk][most_edges];
-  double share[2][chunk][most_edges - 1 + 2 * margin];  ///< light of columns and rows, between zeros
+  double share[2][chunk][most_edges - 1 + 2 * margin];  ///< fraction of the light in each column and row of the
+                                                        ///< footprint, with zeros on either side
   // Two copies, since the images of the next chunk are loaded while those of a chunk are drawn.
   int start[2][2][chunk];                     ///< [chunk % 2] first pixel whose share is computed, relative to the tile
   std::uint32_t reaching[2][threads / warp];  ///< [chunk % 2] bit mask of the images that overlap the rows of a warp
@@ -101,7 +102,7 @@ struct Place {
 
 __device__ Place place_of(int index, int elements) { return {index / elements, index % elements}; }
 
-/// Returns the position that is `step` further.
+/// Returns the position that follows `from` by `step`, which counts items and elements.
 __device__ Place next_place(Place const& from, Place const& step, int elements) {
   Place const next{from.item + step.item, from.element + step.element};
   return next.element < elements ? next : Place{next.item + 1, next.element - elements};

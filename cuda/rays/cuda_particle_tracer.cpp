@@ -24,8 +24,8 @@ constexpr std::size_t most_batch_bytes = std::size_t{256} << 20, most_of_batch =
 /// Particles at both pulses, in host memory.
 using HostPulses = ParticleSources<double, AnyScattering>[frame_count];
 
-/// Traces a batch of particles on the device. The medium is also needed on the host, which computes the aims of
-/// particles whose rays the device cannot restrict to the stop.
+/// Traces a batch of particles on the device. The medium is also needed on the host, which determines the ray
+/// directions of particles whose rays the device cannot restrict to the stop.
 template <class Medium>
 class BatchPass {
  public:
@@ -90,7 +90,7 @@ class BatchPass {
  private:
   unsigned int counted(std::size_t step) const { return counts_[step]; }
 
-  /// Lists, by number of rays, the aims of the chosen particles whose rays fill the stop.
+  /// Lists, by number of rays, the chosen particles (with their pulse) whose rays fill the stop.
   void list(int const* at) {
     list_particles(on_device_.ladder(), batch_.aims().data(), at, batch_.steps(), batch_.count(),
                    batch_.listed(launches_.size()));
@@ -141,7 +141,7 @@ class BatchPass {
     trace_wider(chosen, steps.data() + count);
   }
 
-  /// Aims on the host those particles that the device could not aim, and traces them.
+  /// Determines on the host the ray directions that the device did not find, and traces these particles.
   void aim_wide() {
     std::size_t const count = batch_.count();
     aims_.resize(batch_.aims().size());
@@ -170,7 +170,7 @@ class BatchPass {
     trace_wider(wide_, steps.data());
   }
 
-  /// Traces aims whose rays are clipped at the stop, by the number of rays of their particles.
+  /// Traces particles whose rays are clipped at the stop, in groups of equal number of rays.
   void trace_wide(std::vector<std::uint32_t> const& aims, int const* step, double sign) {
     for (std::size_t here = 0; here < launches_.size(); ++here) {
       std::vector<std::uint32_t> some;
@@ -259,9 +259,11 @@ class BatchPass {
   double across_medium_;
   unsigned long long* ends_;
   unsigned int counts_[LadderView::max_step_count + 1] = {};
-  std::vector<PulseAim> aims_;       ///< aims of the batch, if the host aims some of them
-  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for the aims set by the host
-  std::vector<std::uint32_t> wide_;  ///< indices of the aims set by the host
+  std::vector<PulseAim> aims_;       ///< ray directions of all particles of the batch; empty if the device determines
+                                     ///< all of them
+  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for the particles whose ray directions the host
+                                     ///< determines
+  std::vector<std::uint32_t> wide_;  ///< indices in aims_ of these particles
 };
 
 /// Returns the number of particles per batch, limited by memory and by the duration of a launch.

@@ -132,7 +132,7 @@ class LaunchOnDevice {
   SourcesLaunch launch_;
 };
 
-/// Sources and their aims.
+/// Sources, with the target areas of their rays.
 struct AimedSources {
   std::vector<SourceOnDevice> placed;
   std::vector<SourceAim> aims;
@@ -176,7 +176,7 @@ class Batch {
   AimedSources const& sources() const { return sources_; }
   /// Returns the largest displacement of a source's rays by the medium in the aim plane [m].
   double moved(std::size_t at) const { return std::sqrt(moved_[at]); }
-  /// Sums over the rays of each scrambling of a source.
+  /// Adds the sums over the rays of a source, separately for each scrambling.
   void sum(std::size_t at, RaySums (&of_scramblings)[most_scramblings]) const {
     auto const scramblings = static_cast<std::size_t>(scene_.scramblings());
     for (std::size_t i = 0; i < scene_.sums_a_source(); ++i) {
@@ -199,7 +199,7 @@ class Batch {
 template <class Medium>
 class SceneTracer {
  public:
-  /// @param steps_across  as Scene::steps_across()
+  /// @param steps_across  number of integration steps of an axial ray across the medium
   SceneTracer(double steps_across, RaysLadder const& ladder, PatternOnDevice const& pattern, Medium const& medium,
               DeviceMedium const& mirrored, ImagePairOnDevice* images, TracingPass& pass)
       : steps_across_(steps_across),
@@ -220,7 +220,7 @@ class SceneTracer {
     for (std::size_t first = 0; first < count; first += most) {
       throw_if_interrupted();
       auto batch = std::make_unique<Batch>(on_device(0), mirrored_, std::move(next), 1);
-      // Aim the next batch while the device is working.
+      // Determine the target areas of the next batch's rays while the device is working.
       std::size_t const after = std::min(first + most, count);
       next = aim(after, std::min(after + most, count));
       finish(std::move(batch));

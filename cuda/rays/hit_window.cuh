@@ -70,7 +70,7 @@ struct SharedParts {
   RaySums* sums;      ///< sums over the rays of each thread
   double* rows_seen;  ///< buffer of blur_hits(); shares the memory of `sums`, which are no longer needed then
   double* share;      ///< weights of the spline
-  int* nodes;         ///< nodes of all windows; null: no windows
+  int* nodes;         ///< nodes of all windows (HitWindow); null: no windows
 
   template <class Launch>
   __device__ SharedParts(unsigned char* memory, Launch const& launch, int threads) {

@@ -47,7 +47,8 @@ class LaunchesOnDevice {
  private:
   ParticleLaunches const& host_;
   DeviceArray<CameraElement<double>> sharp_;
-  mutable std::vector<DeviceArray<CameraElement<double>>> smooth_;  ///< uploaded on first use
+  mutable std::vector<DeviceArray<CameraElement<double>>> smooth_;  ///< camera elements with a smoothed edge of the
+                                                                    ///< stop, uploaded on first use
   DeviceArray<double> airy_, share_, rules_;
   StopView stop_;
   LadderView ladder_;
@@ -97,13 +98,12 @@ class ParticleBatch {
   }
 
   ParticleSteps steps() { return {steps_.data(), steps_.data() + count_, steps_.data() + 2 * count_, counts_.data()}; }
-  /// Arrays step, next and chosen, one after the other.
+  /// Memory of the arrays `step`, `next` and `chosen` of steps(), one after the other.
   DeviceArray<int>& all_steps() { return steps_; }
-  /// Number of listed aims for each number of rays; the last element counts the aims that the host computes, or the
-  /// particles
-  /// that need more rays.
+  /// Number of listed pairs of particle and pulse for each number of rays. The last element counts the pairs whose ray
+  /// directions the host determines, or the particles that need more rays.
   DeviceArray<unsigned int>& counts() { return counts_; }
-  /// Returns the memory for the lists of aims. @param steps  number of steps of RaysLadder
+  /// Returns the memory for the lists of pairs of particle and pulse. @param steps  number of steps of RaysLadder
   std::uint32_t* listed(std::size_t steps) {
     if (listed_.size() == 0) listed_ = DeviceArray<std::uint32_t>(steps * frame_count * count_, "the particles");
     return listed_.data();

@@ -42,7 +42,8 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
   for (std::uint64_t of_block = share.first; of_block < share.last; of_block += threads) {
     std::uint64_t const j = of_block + threadIdx.x;
     ParticleRay ray;
-    bool alone = false;  // true: window did not take the ray, whose PSF is added alone
+    // true: the window of spline nodes did not accept the ray, whose PSF is added directly to the image
+    bool alone = false;
     if (j < share.last) {
       ray = trace_particle_ray(launch, camera, medium, aim, share.pulse, share.particle, share.key, j);
       ray.enter(share.origin, sums);

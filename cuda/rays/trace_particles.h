@@ -31,34 +31,35 @@ struct AnyScattering {
   }
 };
 
-/// State of the aim of one particle at one pulse.
+/// State of the search for the directions in which a particle's rays are sent at one laser pulse.
 enum class AimState : int {
-  none,     ///< not illuminated, or no ray passes the stop
+  none,     ///< no rays: the particle is not illuminated, or no ray passes the stop
   filled,   ///< all rays fill the stop, and none is clipped there
-  unknown,  ///< aim to be computed by the host
+  unknown,  ///< not found on the device; the host determines the directions
   wide,     ///< the rays cover a disc around the stop and are clipped there
 };
 
-/// Directions of the rays of one particle at one pulse, and the expected position of their light.
+/// Directions of the rays of one particle at one laser pulse, and the expected position of their light.
 struct PulseAim {
   AimState state = AimState::none;
-  AimMap seen, ambient;  ///< aim map with and without the medium
+  AimMap seen, ambient;  ///< map from the unit disc to the entrance pupil, with and without the medium
   Vec2d low{}, high{};   ///< approximate bounding box of the ray hits on the sensor [px]
   double spread2 = 0;    ///< variance of the hits, as FilledStop::spread2 [px^2]
 };
 
-/// Numbers of rays among which that of each particle is chosen (RaysLadder), on the device.
+/// Sequence of ray numbers from which the number of rays of each particle is chosen (RaysLadder), on the device.
 struct LadderView {
-  static constexpr int max_step_count = 16;  ///< maximum number of numbers of rays
+  static constexpr int max_step_count = 16;  ///< maximum length of `rays`
 
   RequiredRayAccuracy goal;
   double light_per_photon = 0;  ///< light in the images per photon
   int steps = 1;
-  int first_clipped = 0;  ///< first step of particles whose rays are clipped at the stop
+  int first_clipped = 0;  ///< first index in `rays` for particles whose rays are clipped at the stop
   bool ruled = false;     ///< rays that fill the stop follow quadrature rules
   std::uint64_t rays[max_step_count] = {};
   int scrambling_bits[max_step_count] = {};
-  std::uint64_t sums_per_pulse = 1;  ///< number of sums of one particle and pulse; maximum over the steps
+  std::uint64_t sums_per_pulse = 1;  ///< number of RaySums of one particle and pulse: shares times scramblings, maximum
+                                     ///< over all elements of `rays`
 
   /// Returns the first step with at least the wanted number of rays, like RaysLadder::at_least().
   GLADSTONE_HD int at_least(double wanted) const {
@@ -85,7 +86,7 @@ struct LadderView {
 
 /// Particles of a batch, and data common to those with the same number of rays.
 struct ParticlesLaunch {
-  static constexpr std::size_t windows = 1;  ///< number of windows per block
+  static constexpr std::size_t windows = 1;  ///< number of windows of spline nodes (HitWindow) per block
 
   CameraView<double> camera;  ///< elements in device memory; the stop has a sharp edge, or a smooth one for wide aims
   TracingOptions<double> tracing;
@@ -100,7 +101,7 @@ struct ParticlesLaunch {
   int patch_px = 0;        ///< widest square of pixels in which a warp accumulates PSFs; 0: none
   DeviceImages images;     ///< images to which light is added; may be empty
   std::uint64_t rays = 1;
-  std::uint64_t sums_per_pulse = 1;  ///< distance between the sums of successive aims
+  std::uint64_t sums_per_pulse = 1;  ///< number of RaySums stored for each particle and pulse
   bool chief_rays = false;           ///< the camera has no stop: trace chief rays only
   double sign = 1;                   ///< sign of the light and of the ray counts; -1 removes those of an earlier launch
 
@@ -183,28 +184,29 @@ struct ParticleSteps {
   int* step;            ///< current step of each particle in the sequence of ray numbers (RaysLadder)
   int* next;            ///< next step of each particle; equal to `step`: the particle has enough rays
   int* chosen;          ///< true: the particle is to be listed, because it has been aimed or needs more rays
-  unsigned int* count;  ///< [step] number of listed aims; last element: number of aims that the host computes, or of
-                        ///< particles that need more rays
+  unsigned int* count;  ///< [step] number of listed pairs of particle and pulse; last element: number of pairs whose
+                        ///< directions the host determines, or of particles that need more rays
 };
 
-/// Aims at the stop for both pulses of `count` particles, and determines the first step of RaysLadder of each.
+/// Determines the directions of the rays of `count` particles towards the stop at both laser pulses, and the first step
+/// of RaysLadder of each particle.
 /// @param stop  stop with its elements in device memory
 /// @param launch  launch of any step
 void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,
                    DeviceMedium const& medium, std::uint64_t count, PulseAim* aims, Vec2d* origins,
                    ParticleSteps const& steps);
 
-/// Lists, by number of rays, the aims of chosen particles whose rays fill the stop.
+/// Lists, by number of rays, the chosen particles (with their pulse) whose rays fill the stop.
 /// @param at  step of each particle
 /// @param listed  output: [step][frame_count * count], in arbitrary order, which does not affect the results
 void list_particles(LadderView const& ladder, PulseAim const* aims, int const* at, ParticleSteps const& steps,
                     std::uint64_t count, std::uint32_t* listed);
 
-/// Traces all rays of the listed aims: one block per share of a particle at one pulse, or one warp for several
+/// Traces all rays of the listed particles: one block per share of a particle at one pulse, or one warp for several
 /// particles with few rays. Adds their light, sums and status counts. Sums have a fixed order and light is in whole
 /// units, so that the result of a particle is independent of the others.
-/// @param state  only aims in this state are traced
-/// @param listed  `count` indices of aims
+/// @param state  only elements of `aims` in this state are traced
+/// @param listed  `count` indices in `aims`
 void trace_particles(ParticlesLaunch const& launch, DeviceMedium const& medium, AimState state, PulseAim const* aims,
                      Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                      ParticlesTraced const& traced);

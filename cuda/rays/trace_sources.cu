@@ -23,7 +23,8 @@ __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> cons
   for (std::uint64_t of_block = first; of_block < last; of_block += threads) {
     std::uint64_t const j = of_block + threadIdx.x;
     RayHit<double> hit[frame_count];
-    bool alone[frame_count] = {};  // true: window did not take the ray, whose PSF is added alone
+    // true: the window of spline nodes did not accept the ray, whose PSF is added directly to the image
+    bool alone[frame_count] = {};
     if (j < last) {
       AimedRay<double> const aimed = aim_ray(launch.sources, bundle, aim.source, j);
       hit[0] = trace_ray(camera, NoMedium<double>{}, launch.tracing, aimed.ray, aimed.weight);

@@ -25,14 +25,17 @@ struct SourceOnDevice {
   std::uint64_t source;                               ///< index of the source in the pattern
   Vec3d centre, a, b, across, by_x, by_y;             ///< target area and its shift, as in AimedBundle
   Vec2d origin;                                       ///< reference point on the sensor of the sums over the rays [px]
-  int window_px = 0;                                  ///< side of the windows that accumulate its light; 0: none
-  int left[frame_count] = {}, top[frame_count] = {};  ///< pixel of the first node in each frame
-  double most_weight = 0;  ///< maximum weight of a ray in the window; PSFs of heavier rays are added one by one
+  int window_px = 0;                                  ///< side of the windows of spline nodes (HitWindow) that
+                                                      ///< accumulate its light; 0: none
+  int left[frame_count] = {}, top[frame_count] = {};  ///< pixel of the window's first node in each frame
+  double most_weight = 0;  ///< maximum weight of a ray that its HitWindow can accumulate in integers; the PSFs of
+                           ///< heavier rays are added directly to the image
 };
 
 /// Data common to all sources of a launch.
 struct SourcesLaunch {
-  static constexpr std::size_t windows = frame_count;  ///< number of windows per block: one per frame
+  static constexpr std::size_t windows = frame_count;  ///< number of windows of spline nodes (HitWindow) per block: one
+                                                       ///< per frame
 
   CameraView<double> camera;  ///< camera with its elements in device memory
   TracingOptions<double> tracing;
@@ -40,7 +43,7 @@ struct SourcesLaunch {
   BundleView choice;
   SpotView spot;
   HitSplineView spline;    ///< weights of the spline in device memory; null share: PSFs are added one by one
-  int most_window_px = 0;  ///< maximum side of windows over all sources [px]
+  int most_window_px = 0;  ///< maximum side of the sources' windows of spline nodes [px]
   DeviceImages images;     ///< images to which light is added; may be empty
   std::uint64_t rays = 1;
   double sign = 1;  ///< sign of the light

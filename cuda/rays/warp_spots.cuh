@@ -74,7 +74,8 @@ class WarpSpots {
   }
 
   int pitch_;
-  float *columns_, *rows_;  ///< [lane][pixel]: column shares, and row shares multiplied by the light
+  float *columns_, *rows_;  ///< [lane][pixel]: fractions of a ray's light in the columns, and those in the rows
+                            ///< multiplied by the light
 };
 
 }  // namespace gladstone::cuda::inline rays

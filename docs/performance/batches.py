@@ -23,7 +23,7 @@ SETUP = {
 
 
 def variations(batch):
-    """Returns the functions `vary` by name."""
+    """Returns the functions for the argument `vary` of RenderedBatches, by name."""
 
     def strength(random):
         return {"flow.circulation_m2_s": random.uniform(0.01, 0.1)}

@@ -12,7 +12,7 @@ _log = logging.getLogger("gladstone")
 
 
 def deliver(messages: list[str]) -> None:
-    """Called by the compiled part at the end of each call."""
+    """Delivers the messages of a call. The compiled module calls this function at the end of each call."""
     for message in messages:
         if not isinstance(message, WarningText):
             _log.info(message)

@@ -12,7 +12,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
 
 
 def key(name: str) -> str:
-    """Returns a key, quoted if necessary."""
+    """Returns a key as TOML, quoted if necessary."""
     return name if _BARE.match(name) else json.dumps(name, ensure_ascii=False)
 
 

@@ -25,7 +25,7 @@ namespace {
 
 using PointArray = nb::ndarray<double const, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
-/// Returns the positions of the nodes along an axis [mm].
+/// Returns the positions of the volume's nodes along an axis (0: X, 1: Y, 2: Z) [mm].
 nb::object volume_axis_mm(Tomography const& self, int axis) {
   std::vector<double> mm;
   for (int i = 0; i < self.grid.nodes[static_cast<std::size_t>(axis)]; ++i)

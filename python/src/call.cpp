@@ -22,7 +22,7 @@
 namespace gladstone::python {
 namespace {
 
-/// Messages logged during one call.
+/// Messages that the library logs during one call from Python.
 class CallMessages {
  public:
   /// @param message  a warning, or the text of another message
@@ -95,7 +95,7 @@ class RunningCalls {
 
 RunningCalls running_calls;
 
-/// State shared by the calling thread and the thread of the computation.
+/// State shared by the calling Python thread and the thread of the computation.
 struct Call {
   CallMessages messages;
   ProgressMonitor monitor;

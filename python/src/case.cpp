@@ -34,7 +34,7 @@ PairCase::PairCase(std::string camera, SetupDocument document, Backend const& de
   prepared_ = std::move(finished.prepared);
   rendered_ = std::move(finished.rendered);
   frames_ = std::move(finished.frames);
-  frames_->levels.reset();  // outcome_ contains the same grey levels
+  frames_->levels.reset();  // release the frames: outcome_ contains the same grey levels
 }
 
 PairCase::PairCase(std::string folder)

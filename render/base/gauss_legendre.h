@@ -22,7 +22,7 @@ struct GaussLegendre {
       double x = -std::cos(pi * (i + 0.75) / (n + 0.5));
       double slope = 0;
       for (int iteration = 0; iteration < 100; ++iteration) {
-        double previous = 1, value = x;  // Legendre polynomials of degree k - 1 and k
+        double previous = 1, value = x;  // values of the Legendre polynomials of degree k - 1 and k
         for (int k = 2; k <= n; ++k) {
           double const next = ((2 * k - 1) * x * value - (k - 1) * previous) / k;
           previous = value;

@@ -12,8 +12,8 @@ struct RegularGrid {
   std::array<int, 3> nodes{1, 1, 1};                  ///< number of nodes along x, y and z
   Vec3d spacing{1.0, 1.0, 1.0};                       ///< distance between nodes [m], positive
   Vec3d origin{0.0, 0.0, 0.0};                        ///< position of node (0, 0, 0) [m]
-  std::array<bool, 3> periodic{false, false, false};  ///< axes along which the field is periodic, with period nodes x
-                                                      ///< spacing
+  std::array<bool, 3> periodic{false, false, false};  ///< true along axes on which the field repeats with a period of
+                                                      ///< nodes times spacing
 
   std::size_t size() const {
     return static_cast<std::size_t>(nodes[0]) * static_cast<std::size_t>(nodes[1]) * static_cast<std::size_t>(nodes[2]);

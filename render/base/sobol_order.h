@@ -74,8 +74,10 @@ GLADSTONE_HD inline std::uint32_t ordered_point(std::uint32_t place, std::uint32
   std::uint32_t const angle = (digits & 1u) | (detail::even_bits(digits >> 1) << 1);
   // Dimension 0 reverses the bits of the index, so that its digits are the low bits.
   std::uint32_t const low = first | detail::unscramble_digits(radius, r, radius_seed);
-  // The matrix of the remaining bits, C(r + k, q), is the product of (1 + z)^r, for polynomials in z with digit q as
-  // the coefficient of z^q, and Pascal's triangle. Modulo 2 and z^32, the inverse of (1 + z)^r is (1 + z)^(32 - r).
+  // The remaining bits of the index follow from the matrix of binomial coefficients C(r + k, q) modulo 2. It is the
+  // product of two matrices: Pascal's triangle, and then the multiplication of a polynomial in z by (1 + z)^r, where
+  // binary digit q of a coordinate is the coefficient of z^q. Modulo 2 and z^32, the inverse of (1 + z)^r is (1 +
+  // z)^(32 - r).
   std::uint32_t rest = (detail::unscramble_digits(angle, a, angle_seed) ^ detail::multiply_by_pascal(low)) & angles;
   for (int k = 0; k < 5; ++k) {
     if (((32 - r) >> k) & 1) rest ^= rest << (1 << k);

@@ -23,7 +23,7 @@ constexpr double incompressible_bits = 7.9;
 bool is_incompressible(std::span<unsigned char const> bytes) {
   std::array<std::uint32_t, 256> counts{};
   for (unsigned char const byte : bytes) ++counts[byte];
-  double sum = 0;  // sum of count log2(count)
+  double sum = 0;  // sum of count log2(count) over all byte values, for Shannon's entropy
   for (double const count : counts) sum += count > 0 ? count * std::log2(count) : 0;
   auto const total = static_cast<double>(bytes.size());
   return std::log2(total) - sum / total > incompressible_bits;
@@ -55,7 +55,8 @@ class Deflation {
   }
 
  private:
-  static constexpr std::size_t bytes_per_part = 64;  // headers of blocks at a change of the level
+  // additional memory per part, for the headers that zlib writes when the level changes
+  static constexpr std::size_t bytes_per_part = 64;
 
   /// Throws std::bad_alloc if zlib fails: the buffer is large enough, so that lack of memory is the only possible
   /// cause.

@@ -41,7 +41,7 @@ class ChunkDeflater {
     std::vector<unsigned char> values, deflated;
   };
   bool retains_;
-  std::vector<Known> known_;  ///< datasets of one chunk that have been compressed
+  std::vector<Known> known_;  ///< compressed datasets of a single chunk; equal datasets are not compressed again
 };
 
 }  // namespace gladstone::inline files

@@ -80,10 +80,10 @@ struct ScaledDataset {
   std::vector<std::string> scales;
 };
 
-/// Storage of a file until it is closed.
+/// Location of the contents of an HDF5 file until the file is closed.
 enum class Hdf5Growth {
-  in_memory,  ///< held in memory and written to disk by close()
-  on_disk,    ///< written row by row, for files larger than memory
+  in_memory,  ///< in memory; close() writes them to disk
+  on_disk,    ///< on disk, row by row, for files larger than memory
 };
 
 /// Writes an HDF5 file of gladstone. The file appears under its final name when close() returns.

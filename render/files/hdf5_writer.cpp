@@ -24,7 +24,7 @@ using namespace hdf5;
 struct Hdf5Writer::Handle {
   OutputFile output;
   Hdf5Growth growth;
-  HeldContent content;  ///< content of an in-memory file; of other files only the origin
+  HeldContent content;  ///< content of a file held in memory; of other files only the provenance
   Id file;              ///< on-disk file
   ChunkDeflater deflater;
 

@@ -45,7 +45,7 @@ GLADSTONE_HD DotAim check_dot(Lanes& lanes, DotModel const& model, Medium const&
        enough = 2 * enough < model.most_rays ? 2 * enough : model.most_rays) {
     bool lost = false;
     for (int first = traced + abreast * lanes.lane(); first < enough; first += abreast * lanes.size()) {
-      lanes.poll();  // A ray may have a million steps.
+      lanes.poll();  // check for an interruption, since a ray may have a million steps
       Vec2d from[abreast], pupil[abreast];
       Deflection ray[abreast];
       for (int i = 0; i < abreast; ++i) {
@@ -111,7 +111,8 @@ struct ConeIntegral {
   DisplacementMoments
       moments[PlaceRule::max_positions];            ///< moments of the whole cone at each point of the source rule
   double without_medium[PlaceRule::max_positions];  ///< sum of weights in the reference image
-  double* rims = nullptr;                    ///< [place][direction] radii at the edge of the stop [m]; external memory
+  double* rims = nullptr;                    ///< [point of the source][direction] distance from the cone's centre to
+                                             ///< the ray at the edge of the stop [m]; memory of the caller
   Extent extents[PlaceRule::max_positions];  ///< range of displacements
   bool simple, sound, narrow;  ///< simple: the edge of the stop is single-valued; sound: the moments are finite;
                                ///< narrow: the spread is narrow

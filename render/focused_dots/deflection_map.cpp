@@ -15,8 +15,9 @@ constexpr double most_rays = 1e8;     // maximum number of rays of a table
 constexpr double cheap_rays = 2.5e5;  // maximum number of rays of a table with doubled node density
 constexpr double fine_rays = 2.5e7;   // maximum number of rays of a table with doubled node density if it is requested
 constexpr double fewest_nodes = 12;   // minimum number of nodes along either axis of the view
-// distance from the centre of the pupil points for the slopes, in radii of the stop: mean radius of the points of the
-// stop
+// The table also contains slopes: derivatives of the deflection with respect to the pupil point. They are differences
+// between rays to pupil points at this distance from the pupil's centre, in radii of the stop, which is about the mean
+// distance of all points of the stop from its centre.
 constexpr double slope_reach = 0.6;
 constexpr double leaning = 2;  // largest distance from the pupil's centre, in radii of the stop, of the rays that are
                                // considered at the side faces of a field
@@ -29,8 +30,8 @@ struct FourAbreast : OneLane {
 
 /// Node density of a deflection table.
 struct NodeDensity {
-  double spacing;  ///< node spacing of the straight lattice [m]
-  int coarseness;  ///< spacing of the slopes' lattice in units of `spacing`
+  double spacing;  ///< node spacing of the lattice of rays to the pupil's centre [m]
+  int coarseness;  ///< node spacing of the slopes' lattice, as a multiple of `spacing`
 
   /// Chooses the node density: one node per cell for a field on a grid, six per finest length (24 per wavelength) for a
   /// closed form, and half as many per axis for the slopes, which are corrections. If affordable or requested, twice as

@@ -167,8 +167,9 @@ struct alignas(16) TableSlopes {
 /// Deflections of rays as a function of their intersection q with the mid-plane of the medium, to first order in the
 /// pupil point. A ray's deflection depends mainly on q and weakly on its direction. A non-owning view.
 struct DeflectionTable {
-  SquareLattice straight;  ///< lattice of rays to the pupil's centre
-  SquareLattice sloping;   ///< lattice of the slopes, which are corrections
+  SquareLattice straight;  ///< deflections of the rays to the pupil's centre
+  SquareLattice sloping;   ///< slopes: derivatives of the deflections with respect to the pupil point, which are small
+                           ///< corrections
   double way = 0;          ///< distance target to mid-plane over distance target to lens [1]
   double pupil_step = 0;   ///< step in the pupil for the finite differences of the slopes [m]
   Vec2d low, high;         ///< bounds of the medium in X and Y [m]

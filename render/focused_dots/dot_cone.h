@@ -24,7 +24,7 @@ struct ConeRule {
   Vec2d const* directions = nullptr;
   int count = 0;
   int direction_count = 0;
-  bool fine = false;  ///< twice as fine as usual
+  bool fine = false;  ///< true: at least twice as many rings and directions as usual
 
   // Rule for a cone without a simple edge: points of equal weight over the whole disc of radius CorrectedCone::reach.
   Vec2d const* scattered = nullptr;
@@ -134,7 +134,7 @@ class CorrectedCone {
   /// Mean displacement of the traced rays, to which moments are relative [px].
   GLADSTONE_HD Vec2d origin() const { return origin_; }
   GLADSTONE_HD double stop_radius() const { return stop_radius_; }
-  /// Returns the pupil point at this offset from the aim [m].
+  /// Returns the pupil point at this offset from the cone's centre [m].
   GLADSTONE_HD Vec2d pupil(Vec2d from_aim) const { return aim_ + from_aim; }
 
   /// Returns the distance from the aim, in a given direction, of the ray that arrives at the edge of the stop [m]; NaN

@@ -8,7 +8,8 @@
 namespace gladstone::inline focused_dots {
 
 struct RenderedDot : DotCone, DotFound {
-  double largest_aim_distance = 0;  ///< largest distance of an aim point from the axis, see DotAim::farthest [m]
+  double largest_aim_distance = 0;  ///< largest distance from the axis of a pupil point that the iteration for the
+                                    ///< cone's centre tried, see DotAim::farthest [m]
 };
 
 /// Single lane that compares a dot's rays with the table, tracing two rays together.

@@ -14,8 +14,8 @@ namespace gladstone::inline focused_dots {
 enum class DotKind : int {
   left,    ///< fallback: rendered by the general renderer, since rays are lost or the table does not cover its cone
   still,   ///< no ray meets the medium: the same image in both frames
-  narrow,  ///< light from the moments of its cone about their mean
-  wide,    ///< light from moments in each of several squares of displacement
+  narrow,  ///< light from the moments of the displacements of its cone about their mean
+  wide,    ///< light from moments as for `narrow`, separately for each of several squares of displacement
 };
 
 /// Imaging model for the dots of a scene.
@@ -112,7 +112,7 @@ struct DotModel {
 /// Centre of a dot's light cone in the pupil.
 struct DotAim {
   DotKind kind = DotKind::left;  ///< left, still, or narrow if the table covers the cone
-  Vec2d pupil{};                 ///< pupil point whose ray arrives at the pupil's centre [m]
+  Vec2d pupil{};                 ///< pupil point of the ray that the medium deflects into the pupil's centre [m]
   double farthest = 0;           ///< largest distance of any iterate from the axis, which the table must cover [m]
 };
 
@@ -123,7 +123,8 @@ GLADSTONE_HD inline Vec2d mean_shift(DotModel const& model, Vec2d centre, Vec2d 
   Vec2d sum{};
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
-      double const away = x != 0 && y != 0 ? 0.5 : 0.7;  // radius relative to the stop's
+      // offset along each axis, in radii of the stop, so that the eight outer points are 0.7 radii from the centre
+      double const away = x != 0 && y != 0 ? 0.5 : 0.7;
       Vec2d const pupil = aim + (away * model.stop_radius) * Vec2d{static_cast<double>(x), static_cast<double>(y)};
       sum += model.table.shift(model.table.crossing(centre, pupil), pupil);
     }

@@ -46,7 +46,7 @@ class DotPatch : public LightPatch {
 
  private:
   LightImage* image_ = nullptr;
-  std::vector<double> of_square_;  ///< light of one square of displacement
+  std::vector<double> of_square_;  ///< light of the displacements in one square
 };
 
 }  // namespace gladstone::inline focused_dots

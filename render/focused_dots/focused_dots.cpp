@@ -38,7 +38,7 @@ std::string reason_against_focused_dots(Setup const& setup) {
 }
 
 std::optional<FocusedDots> build_focused_dots(Scene const& scene, RenderPlan const& plan) {
-  constexpr int widest_spot = 22;  // [px] to either side; limit of DotPatch's row length
+  constexpr int widest_spot = 22;  // maximum half width of the PSF, limited by the row length of DotPatch [px]
   if (!reason_against_focused_dots(scene.setup).empty()) return std::nullopt;
   if (GaussianSpot<double>{scene.spot_sigma_px()}.half_width() > widest_spot) return std::nullopt;
   if (table_state(scene) != TableState::made && table_state(scene) != TableState::no_medium) return std::nullopt;

@@ -53,7 +53,7 @@ class LoneDot {
   void compare_with_rays(int rays);
   /// Returns the light of the rendering in the pixel windows of both images, the reference image first.
   std::vector<double> const& light() const { return light_; }
-  /// Returns the difference of sample k from the rendering.
+  /// Returns the difference between the rays of sample k and the rendering.
   Difference const& difference(int k) const { return difference_[k]; }
 
  private:

@@ -17,7 +17,7 @@ namespace gladstone::inline focused_dots {
 /// displacement fall on pixel centres and edges, where different devices could otherwise round them into different
 /// squares.
 struct MomentLattice {
-  static constexpr double aside = 0.01;  ///< position of the centre of square 0 [px]
+  static constexpr double aside = 0.01;  ///< position of the centre of square 0, relative to the centre of pixel 0 [px]
   int per_pixel = 1;                     ///< number of squares along a pixel's side
   int pixels = 1;                        ///< number of pixels along a square's side; this or per_pixel is 1
 
@@ -39,7 +39,7 @@ struct MomentLattice {
     int const rest = (square + per_pixel / 2) % per_pixel;
     return rest < 0 ? rest + per_pixel : rest;
   }
-  /// Distance from the pixel's centre to the square's [px].
+  /// Returns the position of the centre of a square with this phase, relative to its pixel's centre [px].
   GLADSTONE_HD double offset(int phase) const {
     int const from_middle = phase - per_pixel / 2;
     return static_cast<double>(from_middle) / per_pixel + aside;
@@ -52,8 +52,8 @@ struct DotSquares {
   static constexpr int most_step = 4;
   MomentLattice lattice;
   int step = 1;           ///< side of one of the dot's squares, as a multiple of the side of the sensor's squares
-  Vec2<int> first{0, 0};  ///< sensor's square at the dot's square (0, 0)
-  Vec2d zero{};           ///< zero displacement relative to that square's centre [px]
+  Vec2<int> first{0, 0};  ///< index, in the sensor's lattice, of the dot's square (0, 0)
+  Vec2d zero{};           ///< position of the undisplaced dot, relative to the centre of that square [px]
 
   /// @param origin  image position of the dot at zero displacement [px]
   /// @param squares_apart  side of a square in squares of the sensor's lattice
@@ -79,7 +79,7 @@ struct DotSquares {
     };
     return {cell(displacement.x + zero.x), cell(displacement.y + zero.y)};
   }
-  /// Returns a displacement relative to a square's centre [px].
+  /// Returns a displacement relative to the displacement at a square's centre [px].
   GLADSTONE_HD Vec2d from_middle(Vec2d displacement, Vec2<int> square) const {
     double const side = step * lattice.side();
     return displacement + zero - Vec2d{side * square.x, side * square.y};
@@ -119,7 +119,8 @@ struct SquareRange {
   GLADSTONE_HD Vec2<int> square(int index) const { return {low.x + index % columns(), low.y + index / columns()}; }
 };
 
-/// The smallest squares of a dot of which its displacements cover no more than SquareRange::most, and their range.
+/// Squares of the smallest size for which the displacements of a dot cover at most SquareRange::most squares, and the
+/// range of these squares.
 struct SpannedSquares {
   DotSquares squares;
   SquareRange range;
@@ -148,7 +149,7 @@ struct MomentImages {
   MomentLattice lattice;
   int half = 0;                    ///< half width of an image, without its middle pixel [px]
   int terms = 0;                   ///< number of terms: PlaceRule::terms, or 1 for a point; 0: no images
-  int stride = 0;                  ///< distance between images in `values`
+  int stride = 0;                  ///< distance between successive images in `values` [numbers]
   double const* values = nullptr;  ///< [phase y][phase x][moment][term][row, column]
 
   /// Determines size and number of the images of a source with a Gaussian PSF, without their `values`. Returns no
@@ -174,11 +175,11 @@ struct MomentImages {
   std::size_t size() const {
     return static_cast<std::size_t>(phases()) * static_cast<std::size_t>(count()) * static_cast<std::size_t>(stride);
   }
-  /// Returns the pixels that are lit by one of the sensor's squares.
+  /// Returns the pixels that the light of one of the sensor's squares reaches.
   GLADSTONE_HD Footprint footprint(Vec2<int> square) const {
     return {lattice.pixel(square.x) - half, lattice.pixel(square.y) - half, width()};
   }
-  /// Returns the first image of a phase.
+  /// Returns the first image of the squares of a phase (position in the pixel).
   GLADSTONE_HD double const* of_phase(int phase) const {
     return values + static_cast<std::size_t>(phase) * count() * stride;
   }

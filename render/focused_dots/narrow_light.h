@@ -35,7 +35,7 @@ GLADSTONE_HD void accumulate_light_by_points(Group const& group, DotModel const&
   CubatureView const& source = model.source;
   double const units = light * patch.units_per_weight();
   auto const at_point = [&](int i) { return origin + model.half_size_px() * source.points[i]; };
-  // Numbers of a point: [axis][order][pixel], then its moments.
+  // Layout of a point's work space: PSF factors [axis][order][pixel], then the moments.
   int const apart = point_numbers(orders, pitch);
   for (int first = team.index() * points; first < source.count; first += team.count() * points) {
     int const here = source.count - first < points ? source.count - first : points;

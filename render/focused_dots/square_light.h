@@ -11,12 +11,13 @@ namespace gladstone::inline focused_dots {
 template <int abreast>
 struct SquareSums {
   SquareRange range;
-  int listed;                              ///< number of squares that contain light
-  unsigned short list[SquareRange::most];  ///< indices of these squares
-  unsigned short ends[PlaceRule::max_positions]
-                     [SquareRange::most];  ///< end of each square's points in the sorted order
+  int listed;                                                        ///< number of squares that contain light
+  unsigned short list[SquareRange::most];                            ///< indices of these squares
+  unsigned short ends[PlaceRule::max_positions][SquareRange::most];  ///< index behind the last point of each square, in
+                                                                     ///< the order of `ConePoints::order`
   DisplacementMoments moments[abreast][PlaceRule::max_positions];
-  double shares[DisplacementMoments::count * PlaceRule::terms][abreast];  ///< weights of the images
+  double shares[DisplacementMoments::count * PlaceRule::terms][abreast];  ///< weights of the MomentImages of each
+                                                                          ///< square
 
   GLADSTONE_HD int begin(int place, int square) const { return square > 0 ? ends[place][square - 1] : 0; }
 };

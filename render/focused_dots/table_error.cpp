@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t place_count = 16;
 /// Rays are added until errors and detection limits are within this fraction of the tolerances.
 constexpr double sufficient_excess = 0.75;
-constexpr double worth_more_rays = 0.7;  ///< required ratio of errors on quadrupling the rays
+constexpr double worth_more_rays = 0.7;  ///< largest ratio of the errors after and before quadrupling the rays for
+                                         ///< which more rays are worthwhile
 
 /// Returns the van der Corput sequence in base 2 (1935): the bits of i mirrored at the binary point.
 double mirrored(std::size_t i) {
@@ -185,7 +186,7 @@ double table_seconds(FocusedDots const& dots) {
 }
 
 double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
-  constexpr double a_node = 0.1e-6;  // look-ups at a node of the cone [s]
+  constexpr double a_node = 0.1e-6;  // time of the table look-ups at one node of a light cone [s]
   Scene const& scene = dots.scene();
   DeflectionTableLayout const layout(dots, scene.dots,
                                      DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);

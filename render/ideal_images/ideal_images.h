@@ -24,7 +24,7 @@ class IdealImages {
   IdealProjection projection() const;
   /// Returns the image position of a point [px].
   Vec2d project(Vec3d place) const { return projection()(place); }
-  /// Returns the widening of the images.
+  /// Returns the widening of the images by defocus.
   DefocusBlur blur() const;
   /// Returns the largest error of the images due to DefocusBlur, relative to the brightest one [1].
   double largest_blur_error(Particles const& particles) const;

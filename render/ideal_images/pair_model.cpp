@@ -20,7 +20,7 @@ static_assert(std::is_trivially_copyable_v<PairModel>);
 
 namespace {
 
-constexpr std::size_t planned_paths = 1024;  // particles from which the number of integration steps is chosen
+constexpr std::size_t planned_paths = 1024;  // number of particles for which the number of integration steps is chosen
 
 ExposureRule exposure_rule(CameraSetup const& camera) {
   ExposureRule rule;
@@ -33,7 +33,7 @@ ExposureRule exposure_rule(CameraSetup const& camera) {
   return rule;
 }
 
-/// Chooses the number of integration steps from particles of the setup's own seed.
+/// Chooses the number of integration steps of the particle paths, from particles drawn with the seed of the setup.
 int choose_steps(ParticleSetup const& particles, FlowSetup const& flow, SeedingPlan const& plan, double pixel_size) {
   std::vector<Vec3d> middle;
   std::vector<double> const diameters(planned_paths, particles.diameter.middle);

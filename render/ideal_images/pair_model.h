@@ -57,7 +57,7 @@ struct PairModel {
   Flow flow;
   double dt = 0;        ///< time between the pulses [s]
   double interval = 0;  ///< time step of the differences along the flow, see ParticleVelocity [s]
-  int steps = 1;        ///< integration steps per half path
+  int steps = 1;        ///< number of integration steps per half path, from mid-time to a pulse
   // light and camera
   LaserSheet<double> sheet;
   Pose<double> sheet_plane;  ///< Scene::sheet_plane()

@@ -26,8 +26,8 @@ struct ParticleImage {
 /// g / 4 from the projection, in both frames. This is neglected.
 struct DefocusBlur {
   double sigma = 1;   ///< standard deviation of the PSF [px]
-  double lens_z = 1;  ///< distance Z in focus [m]
-  double reach = 0;   ///< M D / 2 [px]; 0: the blur is neglected
+  double lens_z = 1;  ///< distance Z from the lens to the plane in focus [m]
+  double reach = 0;   ///< M D / 2, magnification times radius of the pupil [px]; 0: the blur is neglected
 
   /// Returns the radius of the circle of confusion of a point [px]. @param z  its position on the axis [m]
   GLADSTONE_HD double radius(double z) const {

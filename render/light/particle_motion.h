@@ -30,7 +30,8 @@ void light_particles(ParticleSetup const& setup, LaserSheet<double> const& sheet
 /// Returns the number of candidate positions per particle for rejection sampling of a non-uniform number density.
 double draws_per_particle(ParticleSetup const& setup, FlowSetup const& flow);
 
-/// Returns true if a candidate particle is accepted by rejection sampling.
+/// Returns true if a candidate particle is accepted, with a probability proportional to the number density at its
+/// position (rejection sampling).
 bool crowds_here(Flow const& flow, Vec3d place, double tau, KeyedEngine& engine);
 
 /// Counts the particles that are outside the velocity field of a file at either pulse.

@@ -65,7 +65,8 @@ GLADSTONE_HD constexpr std::uint32_t complete_points(std::uint64_t rays, int scr
 struct BundleView {
   std::uint64_t seed = 0;
   PupilSampling sampling = PupilSampling::sobol;
-  int scrambling_bits = 0;           ///< ray j is point j >> bits of scrambling j mod 2^bits
+  int scrambling_bits = 0;           ///< bits b of the number of scramblings 2^b; ray j uses point j / 2^b (rounded
+                                     ///< down) of scrambling j modulo 2^b
   std::uint32_t ordered_points = 0;  ///< number of leading points of each scrambling that ordered_point() permutes
 };
 

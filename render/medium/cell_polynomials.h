@@ -130,7 +130,7 @@ struct CellPolynomials {
         value[n] = value[n] * x + coefficient;
       }
     }
-    /// Adds the next lower coefficient at point n, without updating the derivative.
+    /// Proceeds to the next lower coefficient of Horner's scheme at point n, without updating the derivative.
     GLADSTONE_HD void take_value(int power, int n, double coefficient, double x) {
       value[n] = power == support - 1 ? coefficient : value[n] * x + coefficient;
     }

@@ -163,7 +163,7 @@ GasMixture read_gas_mixture(SetupTable& medium, double wavelength) {
   }
   if (!(std::abs(sum - 1) <= tolerance)) {
     fractions = {};
-    fractions.front() = 1;  // air, so that reading continues
+    fractions.front() = 1;  // assume air, so that reading continues
   }
   if (wavelength < shortest_gas_wavelength || wavelength > longest_gas_wavelength) {
     medium.problem("gas", fmt::format("has no constant at {:.6g} nm (the formulas are valid from {:.0f} to {:.0f} nm); "

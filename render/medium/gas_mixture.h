@@ -13,8 +13,9 @@ namespace gladstone::inline medium {
 /// A gas whose Gladstone-Dale constant is known as a function of the wavelength.
 struct Gas {
   std::string_view name;                        ///< key of the setup
-  double molar_mass;                            ///< [kg/mol]
-  double (*gladstone_dale)(double wavelength);  ///< K [m^3/kg] at a vacuum wavelength [m]
+  double molar_mass;                            ///< molar mass [kg/mol]
+  double (*gladstone_dale)(double wavelength);  ///< returns the Gladstone-Dale constant K [m^3/kg] at a vacuum
+                                                ///< wavelength [m]
 };
 
 /// Range of vacuum wavelengths in which the constants of all gases are valid [m]. Some of the dispersion formulas were

@@ -60,8 +60,8 @@ std::optional<Vec2d> aim_of_line(Ray<double> const& line) {
 std::optional<Vec2d> aim_from_stop(StopMapping const& sight) {
   if (!sight.trace_back) return std::nullopt;
   StopMapping back;
-  back.radius = 1;   // scale of the tolerance [rad]
-  back.step = 1e-6;  // step of the slope [1]
+  back.radius = 1;   // scale of the tolerance of the residual [rad]
+  back.step = 1e-6;  // step of the finite differences of the slope [1]
   back.place = [&](Vec2d slope) -> std::optional<Vec2d> {
     auto const line = sight.trace_back(slope);
     auto const aim = line ? aim_of_line(*line) : std::nullopt;

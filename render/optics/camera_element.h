@@ -15,8 +15,8 @@ namespace gladstone::inline optics {
 template <class T>
 struct PosedStop {
   Pose<T> pose;
-  T radius{};  ///< [m]
-  T edge{};    ///< area of the smoothed zone about the rim, see ApertureStop; 0: sharp
+  T radius{};  ///< radius of the stop [m]
+  T edge{};    ///< area of the smoothed zone about the edge relative to the stop's area, see ApertureStop [1]; 0: sharp
 
   /// Computes the intersection of a ray with the stop's plane, in its frame [m]. @return false if they are parallel
   GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const { return pose.meet(ray, place); }

@@ -43,7 +43,7 @@ struct Glass {
   struct Transmission {
     double wavelength;    ///< [m]
     double transmission;  ///< internal transmittance [1]
-    double thickness;     ///< thickness to which it refers [m]
+    double thickness;     ///< thickness of glass with this transmittance [m]
   };
   std::vector<Transmission> transmission;  ///< samples of the transmission in order of wavelength; may be empty
   struct Sample {

@@ -54,11 +54,11 @@ void require_range(std::vector<Glass const*> const& found, double wavelength, st
 struct Choice {
   std::vector<Glass const*> found;  ///< glasses to choose from, in order
   Glass const* glass = nullptr;     ///< chosen glass
-  bool in_no_catalogue = false;     ///< no catalogue contains the name
-  bool followed = false;            ///< the glasses are successors
+  bool in_no_catalogue = false;     ///< true: no catalogue contains the name
+  bool followed = false;            ///< true: the glasses are successors of the named glass
   bool listed = false;              ///< the catalogue of the glass is in the lens file's list, or the file has no list
-  bool added = false;               ///< the catalogue of the glass was added
-  bool ambiguous = false;           ///< another glass comes first in order, or has a different index
+  bool added = false;               ///< true: the user added the catalogue of the glass
+  bool ambiguous = false;           ///< true: another glass comes first in order, or has a different index
 
   /// Describes the assumptions made: "may be A, B, with different indices; A is taken"; empty if none was made.
   std::string text(std::vector<std::string> const& list, std::optional<double> stated_nd) const {

@@ -63,7 +63,8 @@ struct Lens {
   int stop = 0;
   double stop_radius = 0;                ///< radius of the stop for real rays [m]
   double paraxial_stop_radius = 0;       ///< radius of the stop for paraxial pupils [m]
-  std::optional<double> image_distance;  ///< behind the last surface [m]; empty: not prescribed
+  std::optional<double> image_distance;  ///< distance of the image plane behind the last surface [m]; empty: not
+                                         ///< prescribed
   Warnings warnings;
 
   LensView<double> view() const { return {surfaces.data(), static_cast<int>(surfaces.size())}; }
@@ -75,8 +76,8 @@ struct LensOptions {
   std::optional<double> f_number = std::nullopt;
   /// Distance from the first vertex to the plane in focus, for telecentric lenses [m]; empty: as in the prescription.
   std::optional<double> object_distance = std::nullopt;
-  bool fresnel = false;     ///< reduce the weight by Fresnel reflection at uncoated surfaces
-  bool absorption = false;  ///< reduce the weight by absorption in glass
+  bool fresnel = false;     ///< true: rays lose light by Fresnel reflection at uncoated surfaces
+  bool absorption = false;  ///< true: rays lose light by absorption in glass
 };
 
 /// Builds a lens from a prescription: finds the glasses, places the surfaces and sets the radius of the stop. The

@@ -39,7 +39,7 @@ struct ShapedSurface {
   T n_after = T(1);   ///< index on the other side [1]
   T absorption{};     ///< absorption coefficient of the medium ahead of the surface [1/m]
   SurfaceAction action = SurfaceAction::refract;
-  bool fresnel = false;  ///< reduce the weight by Fresnel reflection
+  bool fresnel = false;  ///< true: rays lose light by Fresnel reflection
   T obscured{};          ///< rays inside this radius are vignetted; 0: none [m]
   T power{};             ///< reciprocal of the focal length in air, for SurfaceAction::focus [1/m]
   SurfaceOutline<T> outline = {};

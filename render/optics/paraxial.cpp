@@ -25,7 +25,7 @@ ParaxialLens paraxial_lens(Lens const& lens) {
   RayTransfer const all = ray_transfer(lens, 0, count);
   double const infinite = std::numeric_limits<double>::infinity();
   ParaxialLens result;
-  // scale of rounding errors: sum of the absolute powers
+  // Scale of rounding errors of the lens' power: sum of the absolute powers of the surfaces.
   double largest = 0;
   for (ParaxialSurface const& s : lens.paraxial) largest += std::abs(s.total_power());
   bool const afocal = std::abs(all.c) <= 1e-12 * largest;

@@ -195,7 +195,7 @@ template <class Medium>
 GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                             Vec3d point, FilledStop& filled) {
   if (!fit_to_stop(view, medium, options, point, filled.map)) return false;
-  Vec2d first{}, sum{};  // edge rays on the sensor, relative to the first [px]
+  Vec2d first{}, sum{};  // positions of edge rays on the sensor, relative to the first [px]
   double squares = 0;
   GLADSTONE_RAY_BY_RAY
   for (int k = 0; k < 2 * rim_rays; ++k) {

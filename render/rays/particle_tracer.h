@@ -106,11 +106,11 @@ class ParticleTracer {
   /// Number of rays traced together, as in SourceTracer.
   static constexpr int rays_traced_together = bends ? 2 : 4;
 
-  /// Target of a particle's rays at one pulse.
+  /// Target area of a particle's rays at one pulse.
   struct Aim {
     enum class Sent { not_at_all, filled, wide };
     Sent sent = Sent::not_at_all;
-    FilledStop straight, bent;  ///< rays that fill the stop, without and with the medium
+    FilledStop straight, bent;  ///< rays that fill the stop exactly, without and with the medium
     SourceAim wide;
   };
 

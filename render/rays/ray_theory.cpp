@@ -42,7 +42,7 @@ Vec2d RayTheory::shift(ImagedPoint const& seen, Ray<double> const& ray, Vec3d le
 }
 
 double theory_seconds(Scene const& scene, RenderPlan const& plan) {
-  constexpr double a_trace = 0.2e-6;  // aiming a ray and tracing it through the optics [s]
+  constexpr double a_trace = 0.2e-6;  // time for aiming a ray and tracing it through the optics [s]
   RaysLaunch const launch(scene, plan, SpotView{});
   RayTheory const theory(scene, launch, scene.dots.shape, scene.dots.half_size > 0);
   double const rays = static_cast<double>(scene.dots.centre.size()) * static_cast<double>(theory.rays());

@@ -25,7 +25,7 @@ enum class RayOrder {
 
 /// Shift of the entrance pupil on the aim plane, as seen from the points of one source instead of from its middle.
 struct AimShift {
-  Vec3d by_x{}, by_y{};  ///< shift per offset of the point in x and y [1]
+  Vec3d by_x{}, by_y{};  ///< shift of the pupil on the aim plane per offset of the source point in x and in y [1]
   double residual = 0;   ///< upper limit of the remaining change of the pupil over the source [m]
 };
 
@@ -39,7 +39,8 @@ struct RaysLaunch {
   double z_b = 0;         ///< distance from the dots to the lens [m]
   double light_unit = 1;  ///< weight times source area of a fully lit pixel on the axis [m^2]
   double point_area = 0;  ///< area attributed to a point source: that seen by a pixel on the axis [m^2]
-  StopRule rule;          ///< rule for rays that fill the stop; without rings: points by `choice`
+  StopRule rule;          ///< quadrature rule of rays that fill the stop; without rings, `choice` determines the
+                          ///< sampling points
   bool ordered = false;   ///< points are in the order of ordered_point()
 
   RaysLaunch(Scene const& scene, RenderPlan const& plan, SpotView const& spot, StopRim rim = StopRim::smooth,

@@ -35,7 +35,7 @@ class RayLight {
   double light_per_weight_ = 0;
 };
 
-/// Target of a source's rays.
+/// Target area of a source's rays, and the position of their light.
 struct SourceAim {
   std::optional<WorldApparentPupil> disc;     ///< entrance pupil as seen from the source; empty: no ray passes
   Vec2d origin{};                             ///< whole-pixel position to which sums are relative [px]

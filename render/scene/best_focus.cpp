@@ -92,8 +92,9 @@ struct FocusMiss {
 /// Returns the position of the lens in the paraxial approximation: Z of the front principal plane [m].
 double paraxial_place(Setup const& setup) {
   double const f = setup.lens.focal_length, z_sensor = *setup.z_sensor;
-  double const shift = paraxial_camera(setup).window_shift;  // apparent shift of objects
-  double apart = 0;                                          // distance from front to rear principal plane
+  // apparent shift of objects by optical windows ahead of the lens [m]
+  double const shift = paraxial_camera(setup).window_shift;
+  double apart = 0;  // distance from the front to the rear principal plane [m]
   if (setup.lens.prescription) {
     Lens const& lens = *setup.lens.prescription;
     ParaxialLens const paraxial = paraxial_lens(lens);

@@ -136,7 +136,7 @@ ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& parax
   double const target = setup.z_b() + paraxial.front, shift = paraxial.window_shift;
   double const focus = setup.focus_distance() + paraxial.front - shift;
   RayTransfer const& m = paraxial.whole;
-  double const image = -(m.a * focus + m.b) / (m.c * focus + m.d);  // distance behind the last surface
+  double const image = -(m.a * focus + m.b) / (m.c * focus + m.d);  // distance of the image behind the last surface [m]
   double const slope = paraxial.chief_slope(target), height = 1 + slope * (target - shift);
   double const magnification = std::abs(m.a * height + m.b * slope + image * (m.c * height + m.d * slope));
   ImagingGeometry imaging;
@@ -187,7 +187,7 @@ double posed_pixel_size(Setup const& setup) {
 }
 
 double posed_view_area(Setup const& setup) {
-  constexpr int pieces = 4;  // segments per edge, which distortion curves
+  constexpr int pieces = 4;  // number of segments per edge of the view, since distortion curves the edges
   Camera const camera = build_camera(setup);
   double const width = setup.camera.columns, height = setup.camera.rows;
   std::vector<Vec2d> outline;

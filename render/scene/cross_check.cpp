@@ -71,7 +71,8 @@ bool cross_check_lens(Setup const& setup, SetupTable root, Warnings& warnings) {
   return true;
 }
 
-constexpr double negligible_loss = 0.01;  // tolerated relative truncation of the displacement for a given thickness
+// relative error of the displacement that is tolerated if a given thickness truncates the field
+constexpr double negligible_loss = 0.01;
 // limit for "auto": 1e-4 px for a displacement of 1 px, as accurate as the truth
 constexpr double noticeable_loss = 1e-4;
 
@@ -81,7 +82,7 @@ Vec2d half_extent_at_medium(Setup const& setup) {
   double const pupil = setup.imaging().entrance_pupil / 2;
   Vec2d half{};
   for (double const z : {-setup.medium.thickness / 2, setup.medium.thickness / 2}) {
-    double const way = (setup.z_d + z) / setup.z_b();  // fraction of the distance from the dots to the lens
+    double const way = (setup.z_d + z) / setup.z_b();  // distance from the dots relative to that of the lens [1]
     half.x = std::max(half.x, target.x / 2 * (1 - way) + pupil * way);
     half.y = std::max(half.y, target.y / 2 * (1 - way) + pupil * way);
   }

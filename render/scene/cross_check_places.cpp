@@ -99,7 +99,7 @@ void cross_check_elements(Setup const& setup, SetupTable const& root) {
   check_elements_behind_lens(setup, root);
   CameraAxis const axis{front_of(setup), setup.camera_pose().z};
   double const infinite = std::numeric_limits<double>::infinity();
-  std::vector<OnTheWay> way;  // objects in the required order of the light path
+  std::vector<OnTheWay> way;  // objects on the light path, in the required order
   if (setup.experiment().sources.on_target) {
     way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), {}});
   }

@@ -12,7 +12,7 @@ namespace gladstone::inline scene {
 struct LensLight {
   Vec3d centre{};         ///< centre of the entrance pupil [m]
   Vec3d axis{0, 0, 1};    ///< unit normal of the pupil
-  double pupil_area = 1;  ///< [m^2]; for chief rays, one square metre
+  double pupil_area = 1;  ///< area of the entrance pupil [m^2]; for chief rays, one square metre
 
   /// @param pupil  diameter of the entrance pupil [m]; 0: chief rays only
   static double area(double pupil) { return pupil > 0 ? pi / 4 * pupil * pupil : 1.0; }

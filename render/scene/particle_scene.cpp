@@ -115,7 +115,7 @@ std::optional<Warning> warning_of_wide_particles(Scene const& scene) {
 /// Returns a warning if the volume ends within the view. Nullopt if it fills the view, is not given, or no particle
 /// is in view.
 std::optional<Warning> warning_of_small_volume(Scene const& scene, ParticleCensus const& census) {
-  constexpr int along = 16;            // points of the view along each side
+  constexpr int along = 16;            // number of points along each side of the view
   constexpr double negligible = 0.01;  // tolerated fraction of these points outside the volume
   ParticleSetup const& particles = scene.setup.piv->particles;
   if (!particles.volume || census.in_view == 0) return {};

@@ -40,7 +40,7 @@ double rays_seconds(Scene const& scene, RenderPlan const& plan) {
 }
 
 double theory_ray_seconds(Scene const& scene, RenderPlan const& plan) {
-  constexpr double a_sample = 20e-9;  // a sample of the gradient [s]
+  constexpr double a_sample = 20e-9;  // time for one sample of the gradient [s]
   constexpr int samples_of_panel = 3;
   double const longest = std::min(plan.step, scene.medium.coarsest_step);
   double const panels = longest > 0 ? std::ceil(scene.steps_across(plan.step) * plan.step / longest) : 0;

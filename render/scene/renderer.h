@@ -21,8 +21,8 @@ enum class TableState {
   no_sources,       ///< no dots in the scene
   field_too_small,  ///< the field hardly extends beyond the light cones
   field_too_fine,   ///< the table would need too many rays
-  by_rays,          ///< rendered ray by ray, which uses no table
-  by_formula,       ///< rendered by a formula, without rays
+  by_rays,          ///< the dots are rendered ray by ray, without a table
+  by_formula,       ///< the particles are rendered by a formula, without rays
   dots_too_wide,    ///< the light cone varies too much over the area of a dot
 };
 /// Returns the reason as the end of a sentence "no deflection table, since ..."; empty if there is a table.
@@ -41,7 +41,8 @@ struct RenderingAccuracy {
 /// Result of rendering a scene.
 struct Rendering {
   RenderPlan plan;                                ///< plan by which it was rendered, with its method
-  FramePair<double> light;                        ///< empty if images were not requested or remain on the device
+  FramePair<double> light;                        ///< light on the sensor; empty if images were not requested or remain
+                                                  ///< on the device
   std::shared_ptr<RenderedLight const> in_place;  ///< light on the device; only with RenderImages::in_place
   GroundTruth truth;
   StatusCounts statuses{};

@@ -50,7 +50,7 @@ struct Scene {
   static double stop_edge(double rays);
   /// Standard deviation of the Gaussian PSF [px]; 0: none.
   double spot_sigma_px() const;
-  /// Scale of diffraction, as Setup::spot_scale_px() [px].
+  /// Scale N (1 + M) lambda of the diffraction-limited PSF, see Setup::spot_scale_px() [px].
   double spot_scale_px() const;
   /// Pose of the dots' plane, with the axes of the world's X and Y.
   Pose<double> target_plane() const { return {{0, 0, -setup.z_d}}; }

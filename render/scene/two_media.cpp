@@ -11,7 +11,7 @@ namespace gladstone::inline scene {
 namespace {
 
 constexpr std::size_t sampled = 256;  // number of particles whose scatter is measured
-constexpr std::size_t keys = 4;       // number of random keys over which it is measured
+constexpr std::size_t keys = 4;       // number of sets of random numbers over which the scatter is measured
 
 /// Returns a sample of particles, spread evenly over the list.
 Particles some_of(Particles const& all) {

@@ -84,7 +84,8 @@ class PixelBlock {
  private:
   using Numbers = std::array<double, size>;
   using Four = double __attribute__((vector_size(4 * sizeof(double))));  ///< vector type of GCC and clang
-  static constexpr std::size_t fours = 2, group = 4 * fours;             ///< pixels whose sums grow together
+  static constexpr std::size_t fours = 2, group = 4 * fours;             ///< number of pixels that are processed
+                                                                         ///< together
   static_assert(size % group == 0);
 
   PixelPattern pattern(std::size_t i) const {
@@ -114,7 +115,7 @@ class PixelBlock {
     auto const is_expanded = [&](std::size_t i) {
       return charge_[i] >= PoissonQuantile::least_expanded && charge_[i] < 1e12;
     };
-    // List the pixels without branches, which a processor would mispredict.
+    // List the pixels with few electrons. Branches are avoided, because a processor would mispredict them.
     std::size_t few = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       selected_[few] = static_cast<std::uint16_t>(i);

@@ -146,7 +146,7 @@ class AiryTable {
     }
   };
 
-  /// @param scale_px  N (1 + M) lambda [px]
+  /// @param scale_px  N (1 + M) lambda: f-number N, magnification M, wavelength lambda [px]
   explicit AiryTable(double scale_px);
   View view() const { return {shares_.data(), subdivisions_, half_width_}; }
 

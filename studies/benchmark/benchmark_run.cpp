@@ -179,7 +179,7 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Backend const& de
     if (!code.reading().empty()) result.conventions.push_back(code.name() + ": " + code.reading());
     result.mistakes.insert(result.mistakes.end(), code.mistakes().begin(), code.mistakes().end());
   }
-  // rows of a case together
+  // keep the rows of a case together, in the order of the cases
   auto const place = [&](BenchmarkRow const& row) {
     return std::find_if(cases.begin(), cases.end(), [&](BenchmarkCase const& c) { return c.name == row.of_case; }) -
            cases.begin();

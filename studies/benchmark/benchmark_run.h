@@ -50,7 +50,8 @@ struct UncertaintyRow {
   /// Relative to the window truth, to the deformed-window truth, which multi-pass correlation measures, and to the
   /// truth at the point (total error).
   UncertaintyQuality window, deformed_window, point;
-  std::vector<UncertaintyBin> bins;  ///< relative to the truth at the point
+  std::vector<UncertaintyBin> bins;  ///< estimated and actual errors by classes of sigma, relative to the truth at the
+                                     ///< point
 };
 
 /// Mean over seeds and its standard error.
@@ -79,7 +80,7 @@ struct BenchmarkResult {
   std::vector<CoverageRow> coverage;
   int seeds = 0;
   std::vector<std::string> conventions;  ///< description of the conventions of each external code
-  std::vector<std::string> mistakes;     ///< probable mistakes in external files, one line each
+  std::vector<std::string> mistakes;     ///< probable mistakes in the conventions of external files, one line each
   std::string device;
 };
 
@@ -89,7 +90,7 @@ struct MadeCase {
   HostFrames frames;
   ParticlePair dots;  ///< particles or dots, without the images
   DisplacementAt truth;
-  std::string setup;  ///< setup of the refracted case; otherwise empty
+  std::string setup;  ///< text of the setup if the images are ray-traced through turbulence; otherwise empty
 
   int columns() const { return frames.reference().columns(); }
   int rows() const { return frames.reference().rows(); }

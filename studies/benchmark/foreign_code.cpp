@@ -38,7 +38,7 @@ struct Nodes {
 };
 
 Nodes find_nodes(DisplacementField const& field, double Vec2d::*component) {
-  std::set<long long> cells;  // coordinates in units of 0.01 px
+  std::set<long long> cells;  // distinct coordinates, rounded to multiples of 0.01 px
   for (Vec2d const& p : field.position_px) cells.insert(std::llround(100.0 * p.*component));
   std::vector<double> levels, steps;
   for (long long const cell : cells) {

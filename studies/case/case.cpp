@@ -218,7 +218,7 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   Scene const& scene = prepared.scene;
   warn(prepared.warnings, scene.medium.warnings);
   if (scene.second_medium) warn(prepared.warnings, scene.second_medium->warnings);
-  warn_of_field(scene, prepared.warnings);  // before rays are traced through the field
+  warn_of_field(scene, prepared.warnings);  // warn before rays are traced through the field
   RenderPlan const& plan = prepared.plan = known.plan ? *known.plan : plan_rendering(scene, known.step);
   if (IntegrationStep const& step = plan.step_estimate; step.change_px >= 1e-4) {
     warn(prepared.warnings,
@@ -255,7 +255,7 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   }
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", plan.step_estimate.step_mm);
-  // "auto" remains if the number of rays differs between sources
+  // "auto" stays in the resolved setup if the number of rays differs between sources
   bool const by_table = plan.method == RenderMethod::focused_dots;
   if ((by_table || plan.adaptive_criteria) && !loaded.setup.render.rays_per_dot) {
     root.table("render").resolve("rays_per_dot", std::string("auto"));

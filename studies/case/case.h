@@ -18,7 +18,7 @@
 
 namespace gladstone::inline cases {
 
-/// Tables of a design question, which a setup may contain. Rendering and correlation ignore them.
+/// Tables that request a design, which a setup may contain. Rendering and correlation ignore them.
 inline constexpr std::array design_tables{"requirements", "limits", "inventory", "free", "correlations"};
 
 /// A setup file read and cross-checked completely.

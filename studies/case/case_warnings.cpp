@@ -159,7 +159,8 @@ std::size_t warn_of_unseen(Warnings& warnings, Scene const& scene, Rendering con
   if (unseen == 0 || !scene.setup.experiment().sources.on_target) return static_cast<std::size_t>(unseen);
   double const stop = scene.imaging.entrance_pupil / 2;
   double const edge = Scene::stop_edge(static_cast<double>(rendering.plan.rays));
-  double const disc = stop * std::sqrt(1 + edge / 2) + rendering.plan.pupil_margin;  // to which rays are sent
+  // radius of the disc to which rays are sent [m]
+  double const disc = stop * std::sqrt(1 + edge / 2) + rendering.plan.pupil_margin;
   double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
   constexpr double few = 16;  // if 16 passing rays are expected, none passes with a probability of e^-16
   if (!scene.chief_rays_only() && pupil_margin > 0 && passing < few) {

@@ -15,7 +15,7 @@ namespace gladstone::inline cases {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t drawn = 4001;       // sample size for quantiles with an accuracy of a few per cent
+constexpr std::size_t drawn = 4001;       // number of drawn diameters, so that quantiles are accurate to a few per cent
 constexpr double angle_margin = 0.01;     // margin about the scattering angles seen by the lens [rad]
 constexpr double visible_snr = 5;         // Rose's criterion
 constexpr double largest_tried = 100e-6;  // largest diameter for which the visibility is tested [m]

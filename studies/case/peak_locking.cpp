@@ -29,7 +29,7 @@ double round_up(double value) {
   return std::ceil(value / step * (1 - 1e-9)) * step;
 }
 
-/// Returns the remedies of a setup as keys with values.
+/// Returns the changes of the setup that prevent peak locking, as keys with values.
 std::string cures(Setup const& setup, ImageDiameters const& images) {
   std::string text;
   auto const add = [&text](std::string const& cure) { text += (text.empty() ? "" : " or ") + cure; };

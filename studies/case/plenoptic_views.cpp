@@ -33,7 +33,7 @@ Image<std::uint16_t> rounded_levels(Image<double> const& levels) {
   return picture;
 }
 
-/// Returns the index of a position along an axis of the stop.
+/// Returns the index of the view from a position on the stop, along one axis.
 int number_of(double place, double diameter, int across) {
   return static_cast<int>(std::lround((place / diameter + 0.5) * across - 0.5));
 }

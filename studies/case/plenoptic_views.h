@@ -58,7 +58,7 @@ class PlenopticViews {
 
   PlenopticCamera camera_;
   Image<double> const& raw_;
-  int half_columns_, half_rows_;  ///< number of lenslets on either side of the middle
+  int half_columns_, half_rows_;  ///< number of lenslets on either side of the middle one, along each axis
 };
 
 /// Returns the positions within a stop of a square grid with `across` points per diameter [m].

@@ -9,7 +9,7 @@
 namespace gladstone::inline cases {
 namespace {
 
-/// Preparation that is being read, and the frames that it is for.
+/// Preparation that is being read from the setup, and the set of frames to which it applies.
 struct ReadPreparation {
   FramePreparation& preparation;
   PreparedSet set;

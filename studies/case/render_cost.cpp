@@ -84,7 +84,7 @@ RenderCost estimate_render_cost(Setup const& setup) {
     double const media = scene.second_medium ? 2 : 1;
     cost.processor_seconds = media * cost.sources * cost.rays_per_source * ray_seconds(scene, plan);
     if (cost.rays_are_largest) cost.expected_rays = kind.expected_rays(setup, cost.rays_per_source);
-  } else if (by_table && !build_focused_dots(scene)) {  // refused by render, with the reason
+  } else if (by_table && !build_focused_dots(scene)) {  // rendering would refuse the setup and state the reason
     cost.processor_seconds = not_measured;
   } else {
     cost.processor_seconds = images * render_seconds(scene, plan, planes ? RenderTheory::no : RenderTheory::yes);

@@ -13,7 +13,7 @@ struct RenderCost {
   RenderMethod method = RenderMethod::automatic;
   double sources = 0;             ///< number of dots (of all planes) or particles in the sheet; NaN: unknown
   double rays_per_source = 0;     ///< number of rays per source: configured, or the largest that "auto" may choose
-  bool rays_are_largest = false;  ///< the number of rays is an upper limit
+  bool rays_are_largest = false;  ///< true: rays_per_source is an upper limit
   double expected_rays = 0;       ///< number of rays that most particles require (PIV with "auto"); otherwise
                                   ///< rays_per_source
   double processor_seconds = 0;   ///< time on one core of the processor of docs/performance.md [s]; NaN: unknown

@@ -20,8 +20,9 @@ char const* margin_word(Margin margin);
 /// One quantity that a command prints, writes as JSON and as CSV.
 struct ResultRow {
   std::string id = {};      ///< number of its formula in docs/design.md, F1 to F27; empty: none
-  std::string key;          ///< for programs, with the unit as suffix; "a.b": member b of the object a
-  std::string symbol = {};  ///< in formulas; empty: none
+  std::string key;          ///< name of the quantity for programs, with the unit as suffix; "a.b": member b of the
+                            ///< object a
+  std::string symbol = {};  ///< symbol of the quantity in formulas; empty: none
   std::string label;
   double value;           ///< in `unit`; NaN: unknown, or not applicable
   std::string unit = {};  ///< empty: a pure number

@@ -30,7 +30,7 @@ struct TruthGroup {
   std::string path;         ///< "/dots"
   std::string source;       ///< axis of the sources in the group: "dot"
   std::string frame;        ///< axis of both frames: "/frame"
-  std::string frame_order;  ///< for readers: "frame (reference, flow)"
+  std::string frame_order;  ///< order of the frames in words, for readers of the file: "frame (reference, flow)"
   char const* rays;         ///< description of the counted rays
   char const* rays_planned;
   char const* conventions;

@@ -30,13 +30,13 @@ struct UncertainInput {
   InputDistribution distribution = InputDistribution::normal;
   /// degrees of freedom of sigma (JCGM 100:2008, G.4) [1]
   double degrees_of_freedom = std::numeric_limits<double>::infinity();
-  SetupNode node;                              ///< node of the setup file
-  std::vector<InputCorrelation> correlations;  ///< every correlation is stored at both inputs
+  SetupNode node;                              ///< node of the setup file that contains the number and its uncertainty
+  std::vector<InputCorrelation> correlations;  ///< correlations with other inputs, each stored at both inputs
 };
 
 /// Replaces every number given with an uncertainty by its value, so that all readers find a plain number, and returns
 /// the uncertainties. Also removes and returns the correlations in [[correlations]], { keys = [.., ..], coefficient =
-/// -0.5 }. Problems are added to the document at the key concerned. Tables of a design question (requirements, limits,
+/// -0.5 }. Problems are added to the document at the key concerned. Tables that request a design (requirements, limits,
 /// ...) are not searched.
 std::vector<UncertainInput> extract_uncertain_inputs(SetupDocument& document);
 

@@ -33,7 +33,7 @@ constexpr std::array<OtherUnit, 0> of_count{};
 
 /// Range of a key's values in laboratories, from microscopes to wind tunnels.
 struct UsualRange {
-  std::array<char const*, 3> path;  ///< tables, then the key; null: unused
+  std::array<char const*, 3> path;  ///< names of the tables, then the key; null: no further name
   double low, high;                 ///< limits in the unit of the key
   char const* unit;
   /// other units in which the number may have been given, the most likely one first

@@ -17,9 +17,10 @@ struct VectorConversion {
   /// Distance of the pixels at which the truth of a case is computed [px]; 0: 1 for formats of grids (.nc, .vti), for
   /// others the truth of the dots or particles.
   int spacing_px = 0;
-  TruthAt truth_at = TruthAt::mid_position;      ///< position to which the truth at a pixel belongs
+  TruthAt truth_at = TruthAt::mid_position;      ///< selects the dot whose displacement is the truth at a pixel: its
+                                                 ///< path is centred there (mid_position) or begins there (reference)
   TracedPixels traced = TracedPixels::adaptive;  ///< pixels to which rays are traced
-  std::string device = "auto";                   ///< computes the truth at pixels
+  std::string device = "auto";                   ///< device that computes the truth at pixels
 };
 
 struct ConvertedVectors {

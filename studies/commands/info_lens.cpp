@@ -78,7 +78,7 @@ std::vector<ResultRow> field_rows(FieldPoint const& point) {
           row("vignetting", "vignetting", point.vignetting, "")};
 }
 
-/// All quantities of a lens; those of field angles by their names.
+/// Returns all quantities of a lens; the names of those of a field angle contain the angle.
 std::vector<ResultRow> all_rows(ParaxialLens const& paraxial, FieldAnalysis const& field) {
   std::vector<ResultRow> rows = lens_rows(paraxial, field);
   for (FieldPoint const& point : field.points) {

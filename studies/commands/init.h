@@ -11,7 +11,7 @@ enum class TemplateKeys { important, all };
 /// Returns the kinds of files that `gladstone init` writes: "bos", "piv", ...
 std::vector<std::string> template_kinds();
 
-/// Returns a commented setup, study or design question. @throws DataError for an unknown kind
+/// Returns a commented setup, study or request of a design. @throws DataError for an unknown kind
 std::string template_text(std::string const& kind, TemplateKeys keys);
 
 /// Writes template_text() into a new file, whose name replaces that in the commands of its comment.

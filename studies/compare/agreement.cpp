@@ -12,7 +12,7 @@
 namespace gladstone::inline compare {
 namespace {
 
-constexpr int pieces_across = 4;  // side length of the plane in jackknife pieces
+constexpr int pieces_across = 4;  // number of jackknife pieces along each side of the plane
 // side length of the plane in dots; at 512 nodes, the dot spacing is half the size of the turbulent structures
 constexpr int dots_across = 96;
 

@@ -10,10 +10,10 @@ namespace gladstone::inline compare {
 
 /// Reference displacement, in addition to the ray truth, with which vectors are compared.
 struct ReferenceDisplacement {
-  char const* measures;  ///< key of its error measures
-  char const* name;      ///< in figures and tables
-  char const* row;       ///< name in the report on the terminal
-  char const* against;   ///< name of the difference from it
+  char const* measures;  ///< key of its error measures in errors.json
+  char const* name;      ///< name in figures and tables
+  char const* row;       ///< name of the row in the report on the terminal
+  char const* against;   ///< name of the difference between measurement and reference
   std::vector<Vec2d> const& (*of)(Comparison const& comparison);
 };
 
@@ -24,11 +24,11 @@ struct ComparisonKind {
   char const* title;  ///< name of the experiment as it appears in sentences
   /// References of the comparison; the first one is the theory, with which the error budget begins.
   std::array<ReferenceDisplacement, 2> references;
-  char const* theory;       ///< theory as the object of a sentence: "against ..."
-  char const* origin;       ///< beginning of the error budget: "from ..."
+  char const* theory;       ///< name of the theory, as it follows "against" in a sentence
+  char const* origin;       ///< first stage of the error budget, as it follows "from" in a sentence
   char const* bias;         ///< "the displacement ..."
   char const* bias_causes;  ///< causes of the difference between true displacement and theory
-  char const* measured;     ///< quantity on which the displacement contains information
+  char const* measured;     ///< quantity that can be determined from the displacement
   char const* remedy;       ///< keys that increase the displacement
   /// Returns the stages of the budget from the theory to the ray truth.
   std::vector<BudgetStage> (*stages)(Comparison const& comparison);

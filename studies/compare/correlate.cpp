@@ -32,7 +32,7 @@ namespace {
 
 CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides, PreparedSet set) {
   SetupTable root = document.root();
-  // The file may be a complete setup, including the tables of a design question.
+  // The file may be a complete setup, including the tables that request a design.
   for (char const* other : {"schema", "experiment", "camera", "lens", "geometry", "window", "element", "medium",
                             "target", "light", "particles", "laser", "flow", "calibration", "sequence", "render"})
     root.mark_as_read(other);

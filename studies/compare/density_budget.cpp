@@ -36,7 +36,7 @@ std::vector<DensityTerm> compute_density_budget(Comparison const& comparison, Re
   GLADSTONE_EXPECTS(comparison.chain == BudgetChain::bos && !reconstruction.truth.empty());
   ReconstructOptions fixed = options;
   fixed.propagate = false;
-  if (reconstruction.axisymmetry) {  // use the same inversion for all stages
+  if (reconstruction.axisymmetry) {  // use the same axis and regularisation for all stages
     fixed.axis->position = reconstruction.axisymmetry->axis.position;
     if (density::abel_method(fixed.abel).regularized) fixed.lambda = reconstruction.axisymmetry->lambda;
   }

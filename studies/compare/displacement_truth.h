@@ -8,7 +8,7 @@ namespace gladstone::inline compare {
 
 /// Pixels to which rays are traced.
 enum class TracedPixels {
-  adaptive,  ///< every fourth column and row, and where the displacement is not smooth
+  adaptive,  ///< every fourth column and row, and all pixels near which the displacement is not smooth
   all,
 };
 

@@ -32,13 +32,13 @@ struct Stencil {
   }
 };
 
-/// Map whose nodes become known level by level.
+/// Map that is computed on successively finer lattices.
 class Refinement {
  public:
   Refinement(int columns, int rows, MapSampler const& sample)
       : value_(columns, rows, {not_a_number, not_a_number}), deviates_(columns, rows), sample_(sample) {}
 
-  /// Computes all nodes of a lattice.
+  /// Computes the values at all nodes of a lattice of the given spacing.
   void compute_lattice(int spacing) {
     std::vector<MapNode> nodes;
     for (int row = 0; row < value_.rows(); row += spacing)

@@ -22,7 +22,7 @@ struct PairNeighbours {
   SequenceFrame const* after = nullptr;
 };
 
-/// Dots or particles of a pair; none unless the method tracks them.
+/// Vectors of the dots or particles of a pair; without vectors unless the method tracks dots.
 struct PairDots {
   DisplacementField vectors;
   std::optional<std::vector<std::int64_t>> stored_tracks;  ///< track numbers in the file of an earlier run; nullopt:

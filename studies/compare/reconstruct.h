@@ -31,13 +31,16 @@ struct AxisOption {
 /// Options of a reconstruction of density.
 struct ReconstructOptions {
   std::string vectors;                       ///< path of the vectors; empty: CASE/vectors.h5
-  std::optional<std::string> conventions;    ///< as given by the user; empty: those of the file's format
-  std::vector<ReferenceRegion> reference;    ///< gauge of the integration; empty for axisymmetric flows
+  std::optional<std::string> conventions;    ///< conventions of the vectors given by the user; empty: those of the
+                                             ///< file's format
+  std::vector<ReferenceRegion> reference;    ///< regions of known density, which fix the constant of the integration;
+                                             ///< empty for axisymmetric flows
   std::optional<double> reference_density;   ///< reference density; empty: ambient density of the setup [kg/m^3]
   double reference_sigma = 0.0;              ///< standard uncertainty of the reference density [kg/m^3]
   double scale_uncertainty = 0.0;            ///< combined relative uncertainty of M, Z_D, K, p and thickness [1]
   std::string method = "wls";                ///< one of density::integration_methods()
-  std::optional<double> overlap;             ///< of the interrogation windows, 0 to below 1 [1]; empty: [correlate]
+  std::optional<double> overlap;             ///< overlap of the interrogation windows, 0 to below 1 [1]; empty: as in
+                                             ///< [correlate]
   std::optional<double> deconvolution_gain;  ///< largest gain of the aperture's deconvolution [1]; empty: none
   std::optional<AxisOption> axis;            ///< axisymmetric flow; empty: planar integration
   std::string abel = "direct";               ///< one of density::abel_methods()

@@ -93,7 +93,7 @@ class SequenceRun {
     } catch (Interrupted const&) {
       try {
         write_state(folder, false);
-      } catch (Interrupted const&) {  // vectors alone suffice to continue
+      } catch (Interrupted const&) {  // ignored, since the stored vectors suffice to continue later
       }
       throw Interrupted(
           fmt::format("interrupted; {} of {} pairs are done, and the same command continues with the others",

@@ -39,8 +39,8 @@ struct StereoMeasurement {
   std::array<std::string, 2> vectors;       ///< paths of the vectors
   std::array<std::string, 2> calibrations;  ///< paths of the calibrations; empty: exact camera of the setup
   std::array<double, 2> window_px{};        ///< size of the interrogation windows [px]
-  /// True displacement, mean over the particles in the window, of cases of one rendering [m, field.grid.size()]; NaN:
-  /// fewer than three particles; empty: unknown.
+  /// Mean true displacement of the particles in each node's window, if both cases belong to one rendering [m,
+  /// field.grid.size()]. NaN: fewer than three particles; empty: unknown.
   std::vector<Vec3d> truth;
   /// laser sheet as determined from images; empty: the sheet was given
   std::optional<stereo::SheetAlignment> alignment;

@@ -61,7 +61,8 @@ void require_same_elements(CaseSetup const& of_case, std::string const& place, s
 /// symmetric cameras would give a third component of the wrong sign without any residual.
 void require_same_view(CaseSetup const& of_case, std::string const& place, PinholeCamera const& camera,
                        std::string const& calibration) {
-  constexpr double largest_angle = 10 * unit::degree;  // an alignment of the sheet changes the view by a few degrees
+  // tolerance: an alignment of the sheet changes the viewing direction by a few degrees
+  constexpr double largest_angle = 10 * unit::degree;
   Vec3d const own = of_case.setup.camera_pose().origin, calibrated = stereo::find_pinhole(camera);
   double const angle = std::atan2(length(cross(own, calibrated)), dot(own, calibrated));
   if (angle <= largest_angle) return;

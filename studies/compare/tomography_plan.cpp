@@ -58,7 +58,7 @@ std::vector<double> turn_field(MediumSetup const& setup, BuiltMedium const& medi
   std::visit(
       [&](auto const& view) {
         Bounds<double> const box = view.bounds();
-        double const slack = 1e-6 * grid.spacing.x;  // rounding of the turned position on a face
+        double const slack = 1e-6 * grid.spacing.x;  // tolerance for positions on a face, which are rounded
         parallel_for(static_cast<std::size_t>(grid.nodes[2]), [&](std::size_t k) {
           for (std::size_t n = 0; n < plane; ++n) {
             std::size_t const column = n % row, line = n / row;

@@ -11,7 +11,7 @@ namespace gladstone::inline compare {
 struct TomographyPlan {
   std::string setup;               ///< path of the setup whose field is turned
   int views = 8;                   ///< number of views
-  double arc = 3.141592653589793;  ///< range of the angles, i / views of which is the angle of view i [rad]
+  double arc = 3.141592653589793;  ///< range of the angles [rad]; view i has the angle i * arc / views
 };
 
 /// Writes one setup for each view of a turned field: `view_00.toml`, and the turned field `view_00.h5`. The field is

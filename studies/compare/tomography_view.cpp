@@ -86,7 +86,7 @@ DisplacementField grid_ray_truth(std::string const& path, Setup const& setup) {
   DisplacementField result = tracking::interpolate_vectors(dots, points);
   result.columns = grid.columns;
   result.rows = grid.rows;
-  result.sigma_px.clear();  // standard errors of the rays, not of the interpolation
+  result.sigma_px.clear();  // omit the standard errors of the rays, which do not include the error of the interpolation
   return result;
 }
 

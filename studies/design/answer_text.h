@@ -9,7 +9,8 @@
 
 namespace gladstone::inline design {
 
-/// A design question with its answer, its variants and its verification.
+/// A requested design (requirements and design variables) with the recommendation, the variants of camera and lens, and
+/// the verification.
 struct AnsweredQuestion {
   DesignQuestion question;
   std::vector<DesignVariant> variants;

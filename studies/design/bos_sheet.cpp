@@ -15,7 +15,8 @@ using unit::mm;
 using unit::um;
 constexpr double gradient_without_field = 10;  // [kg/m^4]
 constexpr double good_dot_px = 3;              // recommended maximum of the diffraction-limited dot diameter, F13
-constexpr double zero_over_e2 = 2.44 / 1.644922989562259;  // first-zero over e^-2 diameter of a diffraction image
+// ratio of the first-zero diameter to the e^-2 diameter of a diffraction-limited PSF
+constexpr double zero_over_e2 = 2.44 / 1.644922989562259;
 constexpr double deforming_strain = 0.1;  // maximum strain that deforming interrogation windows follow, F19
 
 constexpr double binding = 1e-3;  // tolerance by which a design may exceed an active limit
@@ -218,7 +219,7 @@ std::string beyond_study(DesignPoint<double> const& b) {
   RandomErrorRange const& range = random_error_range;
   std::string text;
   auto const check = [&text](char const* what, double value, double low, double high, double unit, char const* name) {
-    constexpr double slack = 5e-3;  // relative rounding of the study's values
+    constexpr double slack = 5e-3;  // tolerance for the rounded limits of the study's range, relative to them
     bool const below = value < low * (1 - slack);
     if (below || value > high * (1 + slack))
       text += fmt::format("{}{} {} {:.3g}{}", text.empty() ? "" : ", ", what, below ? "below" : "above",

@@ -15,7 +15,8 @@ namespace {
 using unit::mm;
 using Extreme = Bound::Extreme;
 
-constexpr double clearance = 1.02;  ///< distance of dots and lens from the mid-plane, in half thicknesses
+constexpr double clearance = 1.02;  ///< minimum distance of dots and lens from the mid-plane of the medium, in half
+                                    ///< thicknesses
 /// Maximum fraction of the target covered by dots; random discs without overlap reach 0.5.
 constexpr double most_coverage = 0.45;
 

@@ -38,11 +38,12 @@ struct ExcessFunction {
 /// A constraint on a set-up: a requirement of the user, or one of those for which the closed forms are valid. A new one
 /// requires one more row in bounds.cpp.
 struct Bound {
-  /// Extreme set-up of a branch that misses the bound only if all others do.
+  /// Set-up of a branch with the shortest (near) or the longest distances (far). If it violates the bound, so do all
+  /// other set-ups of the branch. none: no set-up has this property.
   enum class Extreme { none, near, far };
 
   char const* name;  ///< path of a requirement's key, whose suffix is the unit; a description of the others
-  double unit = 1;   ///< value of that unit in SI
+  double unit = 1;   ///< that unit in SI
   ExcessFunction excess;
   bool from_below = false;  ///< lower limit: a larger value is stricter
   Extreme extreme = Extreme::none;

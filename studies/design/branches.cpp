@@ -77,7 +77,7 @@ std::vector<double> values_of(FreeChoice const& free, DesignVariant const& varia
   if (variant.lens.empty() || free.choice == Choice::z_a || free.choice == Choice::z_d) return free.values;
   if (free.choice == Choice::focal_length) return {variant.setup.lens.focal_length};
   std::vector<double> values = free.values;
-  if (free.choice == Choice::f_number) {  // a prescription cannot open wider than its own stop
+  if (free.choice == Choice::f_number) {  // exclude f-numbers below that of the prescription's own stop
     std::erase_if(values, [&](double value) { return value < variant.setup.lens.f_number * (1 - 1e-6); });
   }
   return values;

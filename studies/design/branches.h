@@ -41,8 +41,8 @@ std::vector<DesignBranch> design_branches(std::vector<DesignVariant> const& vari
 std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> const& variants,
                         DesignQuestion const& question);
 
-/// Returns the setup of a design, ready to render: the variant's setup with the design's values, without the tables of
-/// the question.
+/// Returns the setup of a design, ready to render: the variant's setup with the design's values, without the tables
+/// that request the design.
 std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question,
                           DesignPoint<double> const& bench);
 

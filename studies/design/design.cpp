@@ -76,7 +76,7 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
   if (report.uncertainty) report.text += uncertainty_text(*report.uncertainty);
 }
 
-/// Adds the answer to the design question.
+/// Adds the recommended design, and its verification.
 /// @param loaded  the setup as given
 void add_answer(DesignRequest const& request, SetupDocument const& document, DesignQuestion question,
                 CaseSetup const& loaded, std::optional<OutputFile>& applied, DesignReport& report) {
@@ -107,7 +107,8 @@ DesignReport answer_design(SetupDocument document, DesignRequest const& request)
   SetupDocument const written = document.copy();
   std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
   std::optional<DesignQuestion> question = read_design_question(document);
-  CaseSetup loaded = load_case_setup(std::move(document));  // reports problems of setup and question together
+  // reports the problems of the setup and those of the requested design together
+  CaseSetup loaded = load_case_setup(std::move(document));
   if (!loaded.setup.experiment().correlated) {
     throw DataError(ErrorCode::wrong_format, request.setup,
                     "is a calibration (the formulas describe BOS and PIV); use a setup of one of these");
@@ -123,7 +124,7 @@ DesignReport answer_design(SetupDocument document, DesignRequest const& request)
     applied.emplace(request.apply, "TOML");
   }
   add_sheet(request, loaded, uncertain, report);
-  if (question) {  // the answer first, then the sheet of the setup as written
+  if (question) {  // the recommended design first, then the sheet of the setup as written
     std::string const sheet = std::exchange(report.text, "");
     add_answer(request, written, std::move(*question), loaded, applied, report);
     report.text += "design sheet of the setup as written\n" + sheet;

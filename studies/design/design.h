@@ -17,12 +17,12 @@
 
 namespace gladstone::inline design {
 
-/// Request to `gladstone design`.
+/// Arguments of `gladstone design`.
 struct DesignRequest {
   std::string setup;
   std::vector<std::string> overrides;
   std::string apply;                     ///< file for the recommended setup; empty: not written
-  VerificationPlan verification;         ///< extent of the simulation; benches = 0: none
+  VerificationPlan verification;         ///< number of designs and repeats to simulate; benches = 0: no simulation
   std::function<Backend()> open_device;  ///< opens the device of the simulation
 };
 
@@ -43,7 +43,7 @@ struct DesignReport {
 
 /// Computes the design sheet of a setup and, if it has [requirements], the recommended setup or the reasons why none
 /// exists. Writes the recommended setup.
-/// @throws SetupError with all problems of the setup and the question
+/// @throws SetupError with all problems of the setup and of the requested design
 /// @throws DataError if the design has no light cone, or for --apply without [requirements]
 /// @throws OutputError if a file cannot be written
 DesignReport answer_design(DesignRequest const& request);

@@ -13,7 +13,7 @@ namespace gladstone::inline design {
 /// Group of inputs correlated directly or through other inputs; an uncorrelated input forms a group of one.
 struct CorrelatedGroup {
   std::vector<Eigen::Index> members;
-  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< minimum over the members
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< smallest degrees of freedom of the members
 };
 
 /// Returns the matrix of correlation coefficients of all inputs.

@@ -47,7 +47,8 @@ SetupNode steady_gradient() {
 /// Computes the mean displacement along the gradient over the dots of a setup, with a key set to a value [px].
 double traced_displacement(CaseSetup const& loaded, UncertainInput const& input, double value, Renderer& renderer) {
   SetupNode root = parse_toml(loaded.document.written(), "setup");
-  std::erase_if(root.members, [](SetupMember const& member) {  // the displacement does not depend on these
+  // remove the tables on which the displacement does not depend
+  std::erase_if(root.members, [](SetupMember const& member) {
     return member.key == "light" || member.key == "correlate" || member.key == "render";
   });
   SetupDocument changed = SetupDocument::from_text(toml_document(root), "setup", loaded.document.folder());

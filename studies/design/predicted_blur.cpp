@@ -12,7 +12,7 @@
 namespace gladstone::inline design {
 namespace {
 
-constexpr int spacing_px = 2;  ///< lattice spacing; a window averages over many nodes
+constexpr int spacing_px = 2;  ///< spacing of the lattice's nodes, of which a window averages over many [px]
 
 /// Displaced sampling point with its weight.
 struct Offset {

@@ -50,7 +50,7 @@ Requirements read_requirements(SetupTable root) {
   std::string const word = table.required_word("objective", {objective_words.begin(), objective_words.end()});
   auto const found = std::find(objective_words.begin(), objective_words.end(), word);
   if (found != objective_words.end()) r.objective = static_cast<Objective>(found - objective_words.begin());
-  std::vector<double> numbers;  // of the last key
+  std::vector<double> numbers;  // numbers of the key that was read last
   for (Bound const& bound : requirements()) {
     if (bound.component() <= 0) numbers = read_required(root.table(bound.table()), bound);
     auto const index = static_cast<std::size_t>(std::max(0, bound.component()));

@@ -50,7 +50,7 @@ struct Limit {
 /// Requirements on a design.
 struct Requirements {
   Objective objective = Objective::gradient_min;
-  std::vector<Limit> limits;  ///< of the given keys, in the order of requirements()
+  std::vector<Limit> limits;  ///< limits given by the user, in the order of requirements()
 };
 
 /// A design variable with its admissible values or interval, in SI.
@@ -66,7 +66,7 @@ struct InventoryCamera {
   SetupNode table;
 };
 
-/// Tables [requirements], [limits], [inventory] and [free] of a setup.
+/// A requested design: tables [requirements], [limits], [inventory] and [free] of a setup.
 struct DesignQuestion {
   Requirements requirements;
   std::vector<FreeChoice> free;
@@ -74,7 +74,7 @@ struct DesignQuestion {
   std::vector<std::string> lenses;       ///< absolute paths of prescription files, in addition to the thin lenses
 };
 
-/// Reads the question; adds every problem to the document at its key.
+/// Reads the requested design; adds every problem to the document at its key.
 /// @return nullopt without a table [requirements]
 std::optional<DesignQuestion> read_design_question(SetupDocument& document);
 

@@ -18,7 +18,7 @@ constexpr double spare = 1e-4;  ///< a limit is active if its margin is below th
 constexpr int front_points = 13;
 constexpr double front_span = 1.6;  ///< range of limits on the front, as a factor to either side of the required one
 
-/// Adds the limits of every set-up, which depend on the branch's camera.
+/// Adds the limits that every set-up must meet, which depend on the branch's camera.
 DesignProblem complete(DesignProblem problem, DesignBranch const& branch) {
   for (Limit const& limit : feasibility_limits(*branch.given)) problem.limits.push_back(limit);
   return problem;
@@ -29,7 +29,7 @@ double moved(Limit const& limit, double factor) {
   return limit.bound->from_below ? limit.value * factor : limit.value / factor;
 }
 
-/// Branches of a question, and the designs of each found so far.
+/// Branches of a requested design, and the designs found so far in each of them.
 struct Search {
   std::vector<DesignBranch> const& branches;
   std::vector<KnownDesigns> known{branches.size()};
@@ -94,7 +94,8 @@ double add_front(Recommendation& answer, DesignProblem const& problem, Search& s
                                      [&](Limit const& limit) { return limit.bound == answer.front_bound; });
   auto const index = static_cast<std::size_t>(of_front - problem.limits.begin());
   double least = HUGE_VAL;
-  for (int k = 0; k < front_points; ++k) {  // strictest first: its solutions are also feasible at the others
+  // the strictest limit first, since its solutions are also feasible with all other limits
+  for (int k = 0; k < front_points; ++k) {
     double const lenience = std::pow(front_span, 2.0 * k / (front_points - 1) - 1);
     double const limit = moved(*of_front, 1 / lenience);
     double const then = search.objective_with(problem, index, limit);

@@ -12,7 +12,7 @@ namespace gladstone::inline design {
 struct BranchOutcome {
   DesignBranch branch;
   BranchSolution solution;
-  bool skipped = false;  ///< excluded before solving, because of the limit `solution.worst`
+  bool skipped = false;  ///< true: excluded without optimisation, because of the limit `solution.worst`
 };
 
 /// Cost of a requirement: change of the objective if the requirement is 1 % stricter.
@@ -33,17 +33,17 @@ struct FrontPoint {
   double objective;
 };
 
-/// Answer to a design question.
+/// Recommended design, or the reasons why no design is feasible.
 struct Recommendation {
   std::vector<BranchOutcome> outcomes;  ///< outcomes of every branch; the best one first if any is feasible
-  // if a design is feasible
+  // only if a design is feasible:
   std::vector<std::string> binding;  ///< active limits of the best design, including ends of intervals
   std::vector<RequirementCost> costs;
   /// trade-off: the best objective for each limit of the requirement `front_bound`; empty if no requirement restricts
   /// the objective
   std::vector<FrontPoint> front;
   Bound const* front_bound = nullptr;
-  // if no design is feasible
+  // only if no design is feasible:
   std::vector<Bound const*> conflicts;  ///< smallest set of requirements that cannot be met together
   /// Branch with the smallest violation if no design is feasible even without requirements.
   std::optional<BranchOutcome> without_requirements;

@@ -47,7 +47,7 @@ bool differ_in_stop_only(DesignBranch const& a, DesignBranch const& b) {
 
 enum class Direction { smaller, larger };
 
-/// Describes the result for the next f-number among the values of the question; empty if there is none.
+/// Describes the result for the next f-number among the admissible values; empty if there is none.
 std::string listed_stop_text(AnsweredQuestion const& answered, Direction direction) {
   BranchOutcome const& chosen = answered.chosen();
   double const own = chosen.branch.value[f_number_index];

@@ -23,22 +23,22 @@ namespace {
 
 using unit::mm;
 
-/// Rows of the BOS sheet that an overview contains.
+/// Keys of the rows of the BOS design sheet that an overview contains.
 constexpr std::array bos_keys{"magnification",     "gladstone_dale_m3_kg",     "magnification_at_medium",
                               "field_of_view_mm",  "field_of_view_height_mm",  "field_of_view_at_dots_mm",
                               "cone_diameter_mm",  "diffraction_diameter_px",  "dot_diameter_px",
                               "depth_of_field_mm", "sensitivity_px_per_kg_m4", "displacement_px",
                               "resolution_mm",     "dots_per_window",          "peak_electrons",
                               "random_error_px",   "gradient_min_kg_m4"};
-/// Rows that depend on a number of dots per window, which only targets of kind "dots" have.
+/// Keys of the rows that depend on a number of dots per window, which only targets of kind "dots" have.
 constexpr std::array pattern_keys{"dots_per_window", "random_error_px", "gradient_min_kg_m4"};
-/// Rows about the image of a dot, which an image target does not have.
+/// Keys of the rows about the image of a dot, which an image target does not have.
 constexpr std::array dot_keys{"dot_diameter_px", "peak_electrons"};
-/// Rows that a camera beyond the sheet replaces by those of add_camera_rows().
+/// Keys of the rows that add_camera_rows() replaces for a camera to which the design sheet does not apply.
 constexpr std::array thin_lens_keys{"magnification",           "magnification_at_medium",  "field_of_view_mm",
                                     "field_of_view_height_mm", "field_of_view_at_dots_mm", "diffraction_diameter_px",
                                     "dot_diameter_px",         "depth_of_field_mm"};
-/// Rows of the PIV sheet that depend on the flow.
+/// Keys of the rows of the PIV design sheet that depend on the flow.
 constexpr std::array flow_keys{"displacement_px", "in_plane_max_m_s", "out_of_plane_max_m_s"};
 
 template <class Keys>
@@ -220,7 +220,7 @@ nlohmann::ordered_json cost_json(RenderCost const& cost) {
           {"memory", memory}};
 }
 
-/// Rows of the overview of an experiment.
+/// Experiment, and the function that adds its rows to an overview.
 struct OverviewKind {
   Experiment const& experiment;
   void (*add)(SetupOverview& overview, CaseSetup& loaded);

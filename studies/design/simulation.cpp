@@ -10,7 +10,8 @@
 namespace gladstone::inline design {
 namespace {
 
-constexpr double wave_strain = 0.02;   ///< image strain caused by a wave: the largest in the estimator's study
+constexpr double wave_strain = 0.02;   ///< strain of the image caused by the simulated wave: the largest strain in the
+                                       ///< study of the estimator
 constexpr double shorter_wave = 0.85;  ///< wavelength of the shorter wave, relative to the one resolved by formula
 /// dots whose image centre is this close to a pixel's centre are used for the peak
 constexpr double near_centre_px = 0.15;

@@ -17,10 +17,10 @@ struct Estimate {
 /// Amplitude of a density wave after each cause of loss, relative to the small-angle theory (Eq. 9).
 struct WaveShares {
   double wavelength = 0;  ///< [m]
-  double cone = 0;        ///< aperture-averaged theory: light cone and dot
-  double refraction = 0;  ///< rays through an ideal lens
-  double lens = 0;        ///< rays through the actual lens
-  Estimate measured;      ///< correlation of the images
+  double cone = 0;        ///< amplitude by the aperture-averaged theory, over light cone and dot [1]
+  double refraction = 0;  ///< amplitude by rays through an ideal lens [1]
+  double lens = 0;        ///< amplitude by rays through the actual lens [1]
+  Estimate measured;      ///< amplitude measured by correlation of the images [1]
 };
 
 /// A cause of the systematic error, rms over vectors and components [px].

@@ -200,7 +200,8 @@ BranchSolution least_violation(DesignProblem const& problem, DesignBranch const&
   BranchSolution best = points.front();
   for (BranchSolution const& start : points) {
     if (best.feasible() || branch.continuous.empty()) return best;
-    for (bool const slack : {true, false}) {  // one of them may converge where the other does not
+    // with and without slack variable: one may converge where the other does not
+    for (bool const slack : {true, false}) {
       Task task{&problem, &branch, slack};
       BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));
       if (better(found, best)) best = found;

@@ -16,7 +16,7 @@ struct VerifiedQuantity {
   double predicted = 0;        ///< predicted value in the key's unit, like predicted_error and simulated
   double predicted_error = 0;  ///< standard error of the formula
   Estimate simulated;
-  bool rms = false;  ///< true: a root mean square, the error of whose square is normally distributed
+  bool rms = false;  ///< true: the quantity is a root mean square, and the error of its square is normally distributed
   std::string why;   ///< explanation of a disagreement
 
   /// Returns true if the difference is within two combined standard errors.

@@ -83,7 +83,7 @@ struct Label {
   TextRole role = TextRole::label;
   Align align = Align::centre;
   double right_px = 0, down_px = 0;  ///< shift [px]
-  bool boxed = false;                ///< true: drawn on a white background
+  bool boxed = false;                ///< true: drawn in a box with a white background
   std::string colour = {};           ///< colour of the text; empty: that of the role
 };
 

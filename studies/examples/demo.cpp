@@ -45,7 +45,7 @@ struct Fineness {
   int nodes;
   double spacing_mm;
 };
-/// The first one equals the resolution of the authors' sample field.
+/// Resolutions of the planes. The first one equals that of the authors' sample field.
 constexpr Fineness finenesses[] = {{64, 0.519}, {128, 0.2575}, {256, 0.1282}, {512, 0.06399}};
 
 constexpr int rays_of_case = 256, rays_of_planes = 64;  // rays per dot

@@ -35,7 +35,7 @@ std::vector<DesignCurve> design_curves(DesignPoint<double> const& bench);
 
 /// Draws the design map: the curves of design_curves(), the setup as a point, the limit by the light cone alone, and
 /// the excluded designs as shaded areas.
-/// @param question  requirements and limits; null: only the limits of every set-up
+/// @param question  requirements and limits of the requested design; null: only the limits of every set-up
 Figure make_design_map(DesignPoint<double> const& bench, DesignQuestion const* question);
 
 /// Draws the trade-off of an answer: the best objective against the limit of a requirement.

@@ -23,7 +23,7 @@ struct ExcludedDesigns {
 /// Determines which set-ups of the design map are excluded: first by the requirements, then by the intervals of Z_D and
 /// f-number in [limits], then by the limits of every set-up. Lens, Z_A and the size of the dot images are those of
 /// `bench`.
-/// @param question  null: only the limits of every set-up
+/// @param question  requested design; null: only the limits of every set-up
 /// @return only limits that exclude a part of the map
 std::vector<ExcludedDesigns> excluded_designs(DesignPoint<double> const& bench, DesignQuestion const* question);
 

@@ -68,7 +68,7 @@ struct ReportPage {
   std::string question;
   std::vector<std::string> findings;
   std::vector<ReportSection> sections;
-  nlohmann::json data = nlohmann::json::object();  ///< of the charts that report.js composes
+  nlohmann::json data = nlohmann::json::object();  ///< data of the charts that report.js draws
   /// files of vectors whose header declares another number of vectors, or that are likely not read as they were written
   std::vector<std::string> doubtful;
 };

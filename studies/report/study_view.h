@@ -50,7 +50,7 @@ nlohmann::json study_data(StudyView const& study);
 /// Formats a table of every case with its axes and main measures.
 TextTable cases_table(StudyView const& study);
 
-/// Describes the question of the study and its progress.
+/// States which error the study determines, over which axes, and how many cases are finished.
 std::string describe_question(StudyView const& study);
 
 /// Describes the cases with the smallest and largest error.

@@ -8,7 +8,7 @@
 #include "studies/case/write_case.h"
 #include "studies/sweep/case_runner.h"
 
-/// Measures of a case, the columns of a study's table.
+/// Measures of a case: the numbers in the columns of a study's table.
 namespace gladstone::inline sweep {
 
 /// Returns the numbers of errors.json by path ("budget.terms.cone.rms_px"), in its order. Null becomes NaN; arrays and

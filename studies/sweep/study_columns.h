@@ -14,7 +14,7 @@ namespace gladstone::inline sweep {
 struct StudyColumn {
   std::string name;
   std::function<double(StudyRow const&)> number;
-  /// texts of the column, of which the number is the index; empty: the number is the value
+  /// texts to which the numbers are indices; empty: the numbers are the values
   std::vector<std::string> labels;
   std::string description;
   bool whole = false;

@@ -62,7 +62,7 @@ class StudyReader {
   static std::string folder_of(std::string const& path) {
     return std::filesystem::absolute(path).parent_path().string();
   }
-  /// Adds this file as source to a position, for values that are inserted into another document.
+  /// Marks a location (line and column) as one in this study file, for values that are inserted into another document.
   SetupPlace placed(SetupPlace place) const {
     place.source = source_;
     return place;

@@ -29,7 +29,7 @@ class StudyPlan {
   StudyFile const& study() const;
   /// Returns the base setup of all cases, as TOML with absolute file names.
   std::string base() const;
-  /// Returns what the author of the study may have overlooked: cases of the first pair of a sequence only.
+  /// Returns a warning if the base setup describes a sequence, since every case is then its first pair.
   Warnings warnings() const;
   std::size_t size() const;
   /// Returns a case including its line_hash. Thread-safe. @throws DataError if an input cannot be read

@@ -118,7 +118,7 @@ class PairwiseCorrelation {
     result.outcome = WindowCorrelation::Outcome::measured;
     result.peaks = found.count;
     for (int p = 0; p < found.count; ++p) {
-      // The plane already includes the scale, by join().
+      // The values of the plane are correlation coefficients, since join() has scaled the spectrum.
       MeasuredPeak const peak = fitted_peak(job_.fit, plane, found.peak[p].x, found.peak[p].y, x_, column, y_, row);
       result.shift[p] = peak.shift;
       result.coefficient[p] = peak.coefficient;

@@ -57,10 +57,10 @@ DenseFlow horn_schunck_flow(GreyImage const& reference, GreyImage const& flow);
 struct GreyRange {
   float low = 0.0f, high = 0.0f;
 };
-/// Number of pixels of which one may exceed the level mapped to 255.
+/// One pixel in this many may exceed the upper limit of joint_range().
 constexpr std::size_t brightest_pixels = 10000;
-/// Returns the range from the darkest pixel of both frames to the level exceeded by one in brightest_pixels of them, so
-/// that a few hot pixels do not reduce the grey-level resolution of the other pixels.
+/// Returns the range from the darkest pixel of both frames to the grey level that one pixel in `brightest_pixels`
+/// exceeds, so that a few hot pixels do not reduce the grey-level resolution of the other pixels.
 GreyRange joint_range(GreyImage const& reference, GreyImage const& flow);
 
 /// Dense inverse search of Kroeger, Timofte, Dai & Van Gool, ECCV 2016, in OpenCV's implementation (cv::DISOpticalFlow)

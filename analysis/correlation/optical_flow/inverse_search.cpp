@@ -36,7 +36,7 @@ cv::Mat eight_bits(GreyImage const& frame, GreyRange const& range) {
   return grey;
 }
 
-/// Returns the displacement from one frame to the other, at the mid-position.
+/// Returns the displacement from the first frame to the second one, at the pixel midway between both positions.
 DenseFlow one_way(cv::Mat const& from, cv::Mat const& to) {
   cv::Mat found;
   try {

@@ -24,7 +24,7 @@ struct VectorTable {
   std::vector<VectorColumn> columns;
   int grid_columns = 0, grid_rows = 0;  ///< numbers of columns and rows of the grid; 0: scattered vectors
   std::string remark;                   ///< units and directions of the axes, for headers
-  std::string content = "vectors";      ///< name of the rows' content for headers: "vectors"
+  std::string content = "vectors";      ///< plural noun for the rows in headers: "vectors"
   int grid_layers = 1;                  ///< number of grid layers along z, stored one after the other
 
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }

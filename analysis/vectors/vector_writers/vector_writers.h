@@ -19,7 +19,7 @@ namespace gladstone::inline vectors {
 /// Writes vectors.h5: all quantities in one dataset each, one value per vector, and the most used ones also as grids
 /// with dimension scales.
 void write_vector_hdf5(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
-/// Writes vectors.h5 with further columns.
+/// Writes vectors.h5 with columns in addition to those of write_vector_hdf5().
 void write_vector_columns(std::string const& path, DisplacementField const& field, std::vector<VectorColumn> more,
                           FileOrigin const& origin);
 

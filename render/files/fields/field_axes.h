@@ -14,7 +14,7 @@ struct StoredAxis {
   double step = 1;                  ///< distance between nodes [length unit of the file]; negative if the axis is
                                     ///< stored in descending order
   std::vector<double> coordinates;  ///< coordinates of all nodes if they are not uniform; empty: first + i step
-  bool stated = false;              ///< the file states the step
+  bool stated = false;              ///< true: the file states the distance between nodes
 };
 
 /// The three axes of a stored array, fastest-varying first.

@@ -27,7 +27,7 @@ struct ValueFactor {
 
 /// Units of a field as stated in its file.
 struct FieldUnits {
-  bool spaced = false;        ///< the file has coordinates or spacings; otherwise nodes are one unit apart
+  bool spaced = false;        ///< true: the file has coordinates or spacings; otherwise nodes are one unit apart
   std::string length;         ///< unit of length as written; empty: not stated
   std::string values;         ///< unit of the values as written; empty: not stated
   std::string unknown;        ///< message about an axis whose spacing is undefined in the file; empty: none

@@ -14,7 +14,8 @@ struct ZmxSystem {
   std::vector<ListedWavelength> wavelengths;
   int primary = 1;                    ///< number of the primary wavelength, from 1
   std::vector<double> fields;         ///< field angles in the y-z plane [rad]
-  std::string heights_at, across_at;  ///< locations of field heights, and of fields outside the y-z plane
+  std::string heights_at, across_at;  ///< places in the file of field heights, and of fields outside the y-z plane, for
+                                      ///< warnings
 };
 
 /// Reads a line ahead of the first surface; lines of other operands have no effect.

@@ -28,7 +28,8 @@ double lit_particles(Scene const& scene) {
 /// cubature_rule_suffices() for the brightest particle at the edge of the laser sheet, at least the second rule.
 /// @param largest  largest number that may be chosen
 double expected_rays_of_particles(Setup const& setup, double largest) {
-  constexpr double second_rule = 16, exposure = 0.9;  // level of the brightest pixel, relative to full scale
+  // number of rays of the second quadrature rule; level of the brightest pixel relative to full scale
+  constexpr double second_rule = 16, exposure = 0.9;
   if (setup.divides_light()) return largest;
   ExpectedParticles const images = expected_particles(setup);
   double const spot2 = images.diffraction_px * images.diffraction_px;

@@ -44,7 +44,8 @@ ArrayOrder order_by_lengths(std::array<std::optional<ArrayCoordinates>, 3> const
   if (axes.rank() == 2) letters = !wide('z') || (wide('x') && wide('y')) ? "xy" : wide('y') ? "yz" : "xz";
   std::string const usual(letters.rbegin(), letters.rend());
   std::vector<std::string> fitting = fitting_orders(letters, of_letter, axes, 0);
-  if (fitting.empty()) fitting = fitting_orders(letters, of_letter, axes, 1);  // n + 1 coordinates: edges of cells
+  // n + 1 coordinates are the edges of n cells
+  if (fitting.empty()) fitting = fitting_orders(letters, of_letter, axes, 1);
   bool some = false, meshes = false;
   for (auto const& own : of_letter) {
     some = some || own;

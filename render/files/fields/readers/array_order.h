@@ -12,7 +12,7 @@ namespace gladstone::inline files {
 struct ArrayOrder {
   std::string letters;   ///< world axes, slowest first: "zyx"
   std::string by;        ///< source of the order, for messages: "by the lengths of its coordinates"
-  bool several = false;  ///< the coordinates allow other orders as well
+  bool several = false;  ///< true: the coordinates allow other orders as well
 };
 
 /// Determines the order of the axes by the lengths of the coordinates: z, y, x if they allow it, else the only order

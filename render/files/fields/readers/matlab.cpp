@@ -95,7 +95,7 @@ class MatrixHead {
   std::vector<char> bytes_;
 };
 
-/// Array of numbers in a file, and where its values are.
+/// Array of numbers in a file, with the location of its values.
 struct MatlabArray {
   ByteRange range;
   std::vector<std::size_t> shape;  ///< slowest axis first

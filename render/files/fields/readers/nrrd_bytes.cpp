@@ -155,7 +155,8 @@ void NrrdBytes::check_end() {
   bool const line_end = got <= 4 && std::all_of(beyond.begin(), end, [](char c) { return c == '\n' || c == '\r'; });
   if (got > 0 && header_.byte_skip == 0 && !line_end)
     refuse_too_long(header_, header_.data_bytes() + static_cast<std::size_t>(got));
-  position_ = std::numeric_limits<std::size_t>::max();  // later reads restart from the beginning
+  // reading is no longer sequential: later reads restart from the beginning
+  position_ = std::numeric_limits<std::size_t>::max();
 }
 
 void NrrdBytes::damaged() const {
