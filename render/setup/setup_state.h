@@ -39,6 +39,10 @@ struct SetupDocument::State {
   std::string absolute_name(SetupNode const& text) const;
 };
 
+/// Adds problems for the keys that were not read, at most max_reported_problems.
+/// @return number of such keys
+std::size_t add_unread(SetupDocument::State& state);
+
 /// Formats a path: "medium.field[0].kind".
 std::string dotted_path(std::vector<std::string> const& path);
 

@@ -266,28 +266,6 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
   return measurement;
 }
 
-void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sources) {
-  namespace fs = std::filesystem;
-  fs::path reference, flow;
-  for (SourceFiles::Source const& source : sources.all()) {
-    if (source.name == "reference") reference = source.path;
-    if (source.name == "flow") flow = source.path;
-  }
-  bool exchanged = reference.filename() == case_file::flow && flow.filename() == case_file::reference;
-  std::string const truth = (reference.parent_path() / case_file::truth).string();
-  if (std::error_code error; !exchanged && !reference.empty() && fs::exists(truth, error)) {
-    Hdf5Reader const file(truth);
-    std::string const first = file.attribute("reference_sha256"), second = file.attribute("flow_sha256");
-    exchanged =
-        !first.empty() && first != second && sources.sha256("reference") == second && sources.sha256("flow") == first;
-  }
-  if (!exchanged) return;
-  field.warnings.push_back({WarningCode::inconsistent, "",
-                            fmt::format("the frames are exchanged: {} is the flow frame and {} the reference, so that "
-                                        "every displacement has the opposite sign; give the reference first",
-                                        reference.string(), flow.string())});
-}
-
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
                            Backend const& device) {
   std::string const reference = in_case(folder, case_file::reference), flow = in_case(folder, case_file::flow);
