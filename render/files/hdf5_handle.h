@@ -12,8 +12,8 @@
 
 #include "render/files/hdf5_file.h"
 
-/// Helpers shared by the files that call the HDF5 C library, hdf5_reader.cpp, hdf5_writer.cpp, hdf5_content.cpp,
-/// hdf5_objects.cpp and hdf5_handle.cpp; not for other files.
+/// Helpers shared by the files that call the HDF5 C library, hdf5_reader.cpp, hdf5_reader_handle.cpp, hdf5_writer.cpp,
+/// hdf5_content.cpp, hdf5_objects.cpp and hdf5_handle.cpp; not for other files.
 namespace gladstone::inline files::hdf5 {
 
 /// Global lock around all HDF5 calls, since Debian's HDF5 library is not thread-safe.

@@ -22,13 +22,7 @@ TheoryModel FocusedDots::theory_model() const {
 
 std::string reason_against_focused_dots(Setup const& setup) {
   if (std::string reason = setup.experiment().reason_for_rays; !reason.empty()) return reason;
-  if (setup.lens.prescription) return "the lens is a prescription";
-  if (setup.pose) return "the camera is not on the Z axis (camera.pose)";
-  if (!setup.elements.empty())
-    return "there are optical elements besides the lens (" + std::string(setup.elements.front().kind()) + ")";
-  if (setup.camera.tilted()) return "the sensor is tilted";
-  if (setup.camera.distorted()) return "the lens distorts";
-  if (!setup.has_closed_form_layout()) return "the camera is not a single ideal thin lens";
+  if (std::string reason = setup.reason_against_closed_form(); !reason.empty()) return reason;
   if (std::isinf(setup.lens.f_number)) return "the lens has no stop (f_number = inf)";
   if (!(std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b())) return "the dots are out of focus";
   if (setup.lens.spot == SpotModel::airy || setup.lens.spot == SpotModel::none)

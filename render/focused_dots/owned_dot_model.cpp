@@ -96,7 +96,7 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
                              bool with_images, MomentImagesBy by) {
   Scene const& scene = dots.scene();
   RenderPlan const& plan = dots.plan();
-  model.axis_px = scene.to_pixel({});
+  model.axis_px = scene.camera.sensor.axis_pixel();
   model.columns = scene.setup.camera.columns;
   model.rows = scene.setup.camera.rows;
   model.source_half = sources.half_size;

@@ -98,8 +98,7 @@ double IdealImages::largest_blur_px(Particles const& particles) const {
 std::string reason_against_ideal_images(Setup const& setup) {
   if (setup.experiment().sources.on_target) return "only particles have ideal images";
   if (setup.medium.field.kind != FieldKind::none || setup.medium.second_field) return "the medium deflects rays";
-  if (!setup.has_closed_form_layout())
-    return "the camera is not an ideal thin lens on the Z axis without other elements";
+  if (std::string reason = setup.reason_against_closed_form(); !reason.empty()) return reason;
   if (setup.lens.focus != Focus::target) return "the lens is not focused on the sheet";
   if (!std::isfinite(setup.lens.f_number)) return "the lens has no stop, and hence no diffraction";
   if (setup.lens.spot == SpotModel::none || setup.lens.spot == SpotModel::airy)

@@ -63,15 +63,16 @@ struct PosedThinLens {
   }
 };
 
-/// OneOf over the types of several lists.
+/// OneOf over the types of several lists, of which each is a SurfaceTypes or a OneOf.
 template <class... Lists>
 struct OneOfLists;
 template <class... All>
 struct OneOfLists<SurfaceTypes<All...>> {
   using Type = OneOf<All...>;
 };
-template <class... First, class... Second, class... Lists>
-struct OneOfLists<SurfaceTypes<First...>, SurfaceTypes<Second...>, Lists...>
+template <template <class...> class List, class... First, template <class...> class Other, class... Second,
+          class... Lists>
+struct OneOfLists<List<First...>, Other<Second...>, Lists...>
     : OneOfLists<SurfaceTypes<First..., Second...>, Lists...> {};
 
 /// Stop, ideal thin lens, surfaces of lenses, and surface types that only one kind of optical element defines.
@@ -79,10 +80,8 @@ template <class T, class Kinds>
 struct CameraElements;
 template <class T, class... Kinds>
 struct CameraElements<T, ElementKinds<Kinds...>>
-    : OneOfLists<
-          SurfaceTypes<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>,
-                       ShapedSurface<T, RadialAsphere<T>>, ShapedSurface<T, TiltedPlane<T>>>,
-          typename Kinds::template OwnSurfaces<T>...> {};
+    : OneOfLists<SurfaceTypes<PosedStop<T>, PosedThinLens<T>>, LensSurface<T>,
+                 typename Kinds::template OwnSurfaces<T>...> {};
 
 /// Closed set of everything that acts on a ray between a source and the sensor. Each contains its pose in the world,
 /// accepts rays of any direction, and has `RayStatus interact(Ray<T>&, RayAccount<T>&) const`, meet() and in_scalar().

@@ -33,6 +33,8 @@ struct EvenAsphere {
     return {-slope * p.x, -slope * p.y, T(1)};
   }
 
+  GLADSTONE_HD T vertex_curvature() const { return conic.curvature + T(2) * a[0]; }
+
   template <class U>
   EvenAsphere<U> in_scalar() const {
     EvenAsphere<U> same{conic.template in_scalar<U>(), {}};

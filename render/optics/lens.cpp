@@ -44,8 +44,8 @@ class LensBuilder {
       bool const last = i + 1 == lens_.prescription.surfaces.size();
       double const way = last && !std::isfinite(prescribed.thickness) ? 0 : prescribed.thickness;
       bool const ideal = prescribed.shape == PrescribedSurface::Shape::ideal_lens;
-      lens_.paraxial.push_back(
-          {vertex_curvature(prescribed), n_before, forwards * after.n, way, ideal ? 1 / prescribed.focal_length : 0});
+      double const curvature = make_shape(prescribed).visit([](auto const& shape) { return shape.vertex_curvature(); });
+      lens_.paraxial.push_back({curvature, n_before, forwards * after.n, way, ideal ? 1 / prescribed.focal_length : 0});
       if (prescribed.stop) lens_.stop = static_cast<int>(i);
       frame = frame.moved({0, 0, way});
       before = after;
@@ -86,10 +86,8 @@ class LensBuilder {
   /// Adds a surface with its prescribed shape.
   void add_surface(Pose<double> const& frame, PrescribedSurface const& prescribed, LensMedium before,
                    LensMedium after) {
-    using Shape = PrescribedSurface::Shape;
-    Quadric<double> const conic{prescribed.curvature, prescribed.conic,
-                                prescribed.shape == Shape::cylinder ? 0.0 : 1.0};
-    auto const add = [&](auto const& shape) {
+    bool const ideal = prescribed.shape == PrescribedSurface::Shape::ideal_lens;
+    make_shape(prescribed).visit([&](auto const& shape) {
       ShapedSurface<double, std::decay_t<decltype(shape)>> surface;
       surface.shape = shape;
       surface.pose = frame;
@@ -98,45 +96,17 @@ class LensBuilder {
       surface.n_before = before.n;
       surface.n_after = after.n;
       surface.absorption = before.absorption;
-      surface.action = prescribed.after.is_mirror()            ? SurfaceAction::reflect
-                       : prescribed.shape == Shape::ideal_lens ? SurfaceAction::focus
-                       : before.n == after.n                   ? SurfaceAction::pass
-                                                               : SurfaceAction::refract;
+      surface.action = prescribed.after.is_mirror() ? SurfaceAction::reflect
+                       : ideal                      ? SurfaceAction::focus
+                       : before.n == after.n        ? SurfaceAction::pass
+                                                    : SurfaceAction::refract;
       surface.fresnel = options_.fresnel;
       surface.obscured = prescribed.obscured;
       if (surface.action == SurfaceAction::focus) surface.power = 1 / prescribed.focal_length;
       surface.outline = prescribed.outline;
       lens_.surfaces.push_back(surface);
       lens_.poses.push_back(frame);
-    };
-    if (prescribed.shape == Shape::ideal_lens) {
-      add(Quadric<double>{});
-    } else if (prescribed.shape == Shape::tilted_plane) {
-      add(TiltedPlane<double>{prescribed.slope});
-    } else if (!prescribed.radial.a.empty()) {
-      add(radial_asphere(prescribed));
-    } else if (!prescribed.asphere.empty()) {
-      EvenAsphere<double> asphere{conic, {}};
-      std::copy(prescribed.asphere.begin(), prescribed.asphere.end(), asphere.a);
-      add(asphere);
-    } else {
-      add(conic);
-    }
-  }
-
-  static RadialAsphere<double> radial_asphere(PrescribedSurface const& prescribed) {
-    RadialAsphere<double> shape{
-        {prescribed.curvature, prescribed.conic}, prescribed.radial.scale, prescribed.radial.even_powers, {}};
-    std::copy(prescribed.radial.a.begin(), prescribed.radial.a.end(), shape.a);
-    return shape;
-  }
-
-  /// Returns the curvature on the axis, including that of a polynomial's r^2 term [1/m].
-  static double vertex_curvature(PrescribedSurface const& prescribed) {
-    using Shape = PrescribedSurface::Shape;
-    if (prescribed.shape == Shape::ideal_lens || prescribed.shape == Shape::tilted_plane) return 0;
-    if (!prescribed.radial.a.empty()) return prescribed.curvature + radial_asphere(prescribed).vertex_curvature();
-    return prescribed.curvature + (prescribed.asphere.empty() ? 0 : 2 * prescribed.asphere[0]);
+    });
   }
 
   Lens& lens_;
@@ -145,6 +115,22 @@ class LensBuilder {
 };
 
 }  // namespace
+
+LensShape<double> make_shape(PrescribedSurface const& surface) {
+  using Shape = PrescribedSurface::Shape;
+  if (surface.shape == Shape::ideal_lens) return Quadric<double>{};
+  if (surface.shape == Shape::tilted_plane) return TiltedPlane<double>{surface.slope};
+  Quadric<double> const conic{surface.curvature, surface.conic, surface.shape == Shape::cylinder ? 0.0 : 1.0};
+  if (!surface.radial.a.empty()) {
+    RadialAsphere<double> shape{conic, surface.radial.scale, surface.radial.even_powers, {}};
+    std::copy(surface.radial.a.begin(), surface.radial.a.end(), shape.a);
+    return shape;
+  }
+  if (surface.asphere.empty()) return conic;
+  EvenAsphere<double> shape{conic, {}};
+  std::copy(surface.asphere.begin(), surface.asphere.end(), shape.a);
+  return shape;
+}
 
 Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, double wavelength,
                 LensOptions const& options) {

@@ -80,6 +80,9 @@ struct LensOptions {
   bool absorption = false;  ///< true: rays lose light by absorption in glass
 };
 
+/// Returns the shape of a prescribed surface.
+LensShape<double> make_shape(PrescribedSurface const& surface);
+
 /// Builds a lens from a prescription: finds the glasses, places the surfaces and sets the radius of the stop. The
 /// radius is the height, in the stop, of the real axial ray through the rim of the entrance pupil, or of the paraxial
 /// ray if the real ray is lost. Warns of faces that cross within the axial beam, and of an f-number that opens the stop

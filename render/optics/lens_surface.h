@@ -123,10 +123,20 @@ struct ShapedSurface {
   }
 };
 
-/// Closed set of all surface shapes of a lens. To add one, write its struct and add its name here and to CameraElement
-/// (camera_element.h).
+/// Closed set of the shapes of a lens surface. To add one, write its struct, add its name to this list, and build it in
+/// make_shape() (lens.cpp).
 template <class T>
-using LensSurface = OneOf<ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>,
-                          ShapedSurface<T, RadialAsphere<T>>, ShapedSurface<T, TiltedPlane<T>>>;
+using LensShape = OneOf<Quadric<T>, EvenAsphere<T>, RadialAsphere<T>, TiltedPlane<T>>;
+
+template <class T, class Shapes>
+struct ShapedSurfaces;
+template <class T, class... Shapes>
+struct ShapedSurfaces<T, OneOf<Shapes...>> {
+  using Type = OneOf<ShapedSurface<T, Shapes>...>;
+};
+
+/// Surface of a lens with any of the shapes.
+template <class T>
+using LensSurface = typename ShapedSurfaces<T, LensShape<T>>::Type;
 
 }  // namespace gladstone::inline optics

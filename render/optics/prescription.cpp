@@ -47,16 +47,7 @@ bool is_real(Prescription const& lens, std::size_t i) {
 /// Returns the sag of a prescribed surface at a radius [m]; 0 for a tilted plane.
 double sag(PrescribedSurface const& surface, double height) {
   if (surface.shape == PrescribedSurface::Shape::tilted_plane) return 0;
-  Quadric<double> const conic{surface.curvature, surface.conic};
-  if (!surface.radial.a.empty()) {
-    RadialAsphere<double> radial{conic, surface.radial.scale, surface.radial.even_powers, {}};
-    std::copy(surface.radial.a.begin(), surface.radial.a.end(), radial.a);
-    return radial.sag(height, 0);
-  }
-  if (surface.asphere.empty()) return conic.sag(height, 0);
-  EvenAsphere<double> asphere{conic, {}};
-  std::copy(surface.asphere.begin(), surface.asphere.end(), asphere.a);
-  return asphere.sag(height, 0);
+  return make_shape(surface).visit([height](auto const& shape) { return shape.sag(height, 0); });
 }
 
 bool is_turned(PrescribedSurface const& surface) {

@@ -52,6 +52,9 @@ struct Quadric {
     return on_sheet(p.z + near / a * d.z);
   }
 
+  /// Returns the curvature at the vertex, along x for a cylinder [1/m].
+  GLADSTONE_HD T vertex_curvature() const { return curvature; }
+
   /// Returns the unit normal at a point of the surface, in +z direction at the vertex.
   GLADSTONE_HD Vec3<T> normal(Vec3<T> const& p) const {
     Vec3<T> const along{-curvature * p.x, -curvature * along_y * p.y, T(1) - (T(1) + conic) * curvature * p.z};

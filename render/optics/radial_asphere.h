@@ -37,8 +37,7 @@ struct RadialAsphere {
     return {-slope * p.x, -slope * p.y, T(1)};
   }
 
-  /// Returns the curvature that the polynomial adds at the vertex [1/m].
-  GLADSTONE_HD T vertex_curvature() const { return T(2) * a[even_powers ? 0 : 1] / (scale * scale); }
+  GLADSTONE_HD T vertex_curvature() const { return conic.curvature + polynomial_curvature(); }
 
   template <class U>
   RadialAsphere<U> in_scalar() const {
@@ -48,6 +47,9 @@ struct RadialAsphere {
   }
 
  private:
+  /// Returns the curvature that the polynomial adds at the vertex [1/m].
+  GLADSTONE_HD T polynomial_curvature() const { return T(2) * a[even_powers ? 0 : 1] / (scale * scale); }
+
   /// Returns the variable of the polynomial: (r / scale)^2 or r / scale. Returns a constant on the axis, where the
   /// derivative of the square root with respect to r^2 would be infinite.
   GLADSTONE_HD T variable(T const& r2) const {
@@ -58,7 +60,7 @@ struct RadialAsphere {
 
   /// Returns (1/r) d(polynomial)/dr [1/m].
   GLADSTONE_HD T slope_over_radius(T const& r2) const {
-    if (!even_powers && !(r2 > T(0))) return vertex_curvature();
+    if (!even_powers && !(r2 > T(0))) return polynomial_curvature();
     T const u = variable(r2);
     T slope = T(terms) * a[terms - 1];  // derivative with respect to u
     for (int i = terms - 2; i >= 0; --i) slope = T(i + 1) * a[i] + u * slope;

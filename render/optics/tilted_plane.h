@@ -24,6 +24,8 @@ struct TiltedPlane {
 
   GLADSTONE_HD Vec3<T> normal(Vec3<T> const&) const { return normalized(Vec3<T>{-slope.x, -slope.y, T(1)}); }
 
+  GLADSTONE_HD T vertex_curvature() const { return T(0); }
+
   template <class U>
   TiltedPlane<U> in_scalar() const {
     return {{U(slope.x), U(slope.y)}};

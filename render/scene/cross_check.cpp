@@ -21,7 +21,7 @@ constexpr double widest_airy_px = 60;    // the table needs 0.2 GB at this size
 constexpr double finest_pitch = 0.5e-6;  // no camera has smaller pixels [m]
 constexpr double fastest_lens = 0.5;     // f-number at which an aplanatic lens in air accepts a half space
 
-/// Builds a camera without closed form to check that it forms an image of the dots.
+/// Builds the camera to check that it forms an image of the dots.
 bool cross_check_camera(Setup const& setup, SetupTable root) {
   try {
     build_camera(setup);
@@ -63,7 +63,7 @@ bool cross_check_lens(Setup const& setup, SetupTable root, Warnings& warnings) {
                      "the dots lie within the focal length, where they have no real image; move the lens away");
     return false;
   }
-  if (!setup.has_closed_form_layout() && !cross_check_camera(setup, root)) return false;
+  if (!cross_check_camera(setup, root)) return false;
   for (OpticalElement const& element : setup.elements) {
     if (auto const warning = element.imaging_warning(setup.imaging(), setup.lens.f_number))
       warnings.push_back(*warning);

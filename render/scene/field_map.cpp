@@ -17,6 +17,17 @@ FieldMap FieldMap::ambient(Setup const& setup, int spacing_px) {
           Image<Vec2d>(columns, rows)};
 }
 
+namespace {
+
+/// Inverse of the thin lens' projection, x = M X / p: returns the point of the target seen by a pixel [m].
+Vec2d unproject_on_axis(Scene const& scene, Vec2d pixel) {
+  double const scale = scene.setup.camera.pixel_pitch / scene.imaging.magnification;
+  Vec2d const middle = scene.camera.sensor.axis_pixel();
+  return {(pixel.x - middle.x) * scale, (middle.y - pixel.y) * scale};
+}
+
+}  // namespace
+
 FieldMap map_field(Scene const& scene, double longest_step, int spacing_px) {
   FieldMap map = FieldMap::ambient(scene.setup, spacing_px);
   MediumSetup const& setup = scene.setup.medium;
@@ -27,7 +38,7 @@ FieldMap map_field(Scene const& scene, double longest_step, int spacing_px) {
           int const row = static_cast<int>(line);
           for (int column = 0; column < map.density.columns(); ++column) {
             throw_if_interrupted();
-            Vec2d const at = scene.to_target(map.position_px(column, row));
+            Vec2d const at = unproject_on_axis(scene, map.position_px(column, row));
             Vec3d const start{at.x, at.y, -scene.setup.z_d};
             Ray<double> const chief{start, normalized(Vec3d{-at.x, -at.y, scene.setup.z_b()})};
             GradientIntegral<double> const along = integrate_gradient(medium, chief, step);
@@ -134,8 +145,8 @@ StrainMap map_strain(Scene const& scene) {
           for (int column = 0; column < along_chief.columns(); ++column) {
             if (!needed[static_cast<std::size_t>(residue(row) * finer + residue(column))]) continue;
             throw_if_interrupted();
-            Vec2d const at = scene.to_target({fine_px * (column - margin * finer) + 0.5 * spacing_px,
-                                              fine_px * (row - margin * finer) + 0.5 * spacing_px});
+            Vec2d const at = unproject_on_axis(scene, {fine_px * (column - margin * finer) + 0.5 * spacing_px,
+                                                       fine_px * (row - margin * finer) + 0.5 * spacing_px});
             Vec3d const start{at.x, at.y, plane_z};
             Ray<double> const ray{start, normalized(Vec3d{-at.x, -at.y, scene.setup.z_a - start.z})};
             along_chief(column, row) = integrate_gradient(medium, ray, scene.medium.coarsest_step).lever_weighted;

@@ -37,11 +37,4 @@ struct ParticleCensus {
 };
 ParticleCensus count_particles(Scene const& scene);
 
-/// Returns warnings for particles or flows that prevent a measurement.
-Warnings warnings_of_particles(Scene const& scene);
-
-/// Checks a PIV setup across keys: particles that scatter no light, a laser sheet outside the volume, optical elements,
-/// wavelengths.
-void cross_check_particles(Setup const& setup, SetupTable root, Warnings& warnings);
-
 }  // namespace gladstone::inline scene

@@ -13,6 +13,7 @@
 #include "render/files/fields/field_file.h"
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
+#include "render/scene/shift_limit.h"
 #include "render/sensor/sensor.h"
 
 namespace gladstone::inline scene {
@@ -78,11 +79,7 @@ double Scene::spot_scale_px() const { return setup.spot_scale_px(); }
 
 double Scene::spot_sigma_px() const { return setup.lens.spot == SpotModel::airy ? 0 : setup.spot_e2_diameter_px() / 4; }
 
-bool Scene::in_view(Vec2d on_target) const {
-  Vec2d const pixel = to_pixel(on_target);
-  Sensor<double> const square_to_axis{0, setup.camera.pixel_pitch, setup.camera.columns, setup.camera.rows};
-  return setup.has_closed_form_layout() ? square_to_axis.covers(pixel) : camera.sensor.covers(pixel);
-}
+bool Scene::in_view(Vec2d on_target) const { return camera.sensor.covers(to_pixel(on_target)); }
 
 Pose<double> Scene::sheet_plane() const {
   LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
@@ -94,20 +91,12 @@ Pose<double> Scene::sheet_plane() const {
 }
 
 Vec2d Scene::to_pixel(Vec2d on_target) const {
-  if (!setup.has_closed_form_layout()) {
-    return camera.project({on_target.x, on_target.y, -setup.z_d}).value_or(Vec2d{not_a_number, not_a_number});
-  }
-  double const scale = imaging.magnification / setup.camera.pixel_pitch;
-  return {0.5 * (setup.camera.columns - 1) + scale * on_target.x, 0.5 * (setup.camera.rows - 1) - scale * on_target.y};
+  return camera.project({on_target.x, on_target.y, -setup.z_d}).value_or(Vec2d{not_a_number, not_a_number});
 }
 
 Vec2d Scene::to_target(Vec2d pixel) const {
-  if (!setup.has_closed_form_layout()) {
-    auto const seen = camera.unproject(pixel, target_plane());
-    return seen ? seen->place : Vec2d{not_a_number, not_a_number};
-  }
-  double const scale = setup.camera.pixel_pitch / imaging.magnification;
-  return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};
+  auto const seen = camera.unproject(pixel, target_plane());
+  return seen ? seen->place : Vec2d{not_a_number, not_a_number};
 }
 
 DotPattern build_target(Setup const& setup) {

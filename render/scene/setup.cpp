@@ -21,6 +21,15 @@ double Setup::focus_distance() const {
   return lens.focus_distance;
 }
 
+std::string Setup::reason_against_closed_form() const {
+  if (lens.prescription) return "the lens is a prescription";
+  if (pose) return "the camera is not on the Z axis (camera.pose)";
+  if (!elements.empty())
+    return "there are optical elements besides the lens (" + std::string(elements.front().kind()) + ")";
+  if (camera.tilted()) return "the sensor is tilted";
+  return camera.distorted() ? "the lens distorts" : "";
+}
+
 bool Setup::has_refracting_elements() const {
   return std::any_of(elements.begin(), elements.end(),
                      [](OpticalElement const& element) { return element.side() != ElementSide::image_plane; });

@@ -87,11 +87,12 @@ struct Setup {
   Vec2d target_centre() const;
   /// Returns the amount by which a target must be larger than the view because its centre is off the camera's axis [m].
   Vec2d target_view_margin() const;
-  /// Returns true for the set-up that closed forms describe: an ideal thin lens on the Z axis without other optical
-  /// elements or distortion, and a sensor perpendicular to the axis.
-  bool has_closed_form_layout() const {
-    return !lens.prescription && !pose && elements.empty() && !camera.tilted() && !camera.distorted();
-  }
+  /// Returns why the closed forms of the literature (a single magnification, Eq. 9) do not describe the camera; empty
+  /// for an ideal thin lens on the Z axis without other optical elements or distortion, and a sensor perpendicular to
+  /// the axis. Theory and the renderers by formula depend on it; project(), unproject() and apparent_pupil() of Camera
+  /// serve every camera.
+  std::string reason_against_closed_form() const;
+  bool has_closed_form_layout() const { return reason_against_closed_form().empty(); }
   /// Returns true if an optical element ahead of the image plane adds aberrations to those of the lens.
   bool has_refracting_elements() const;
   /// Returns true if an optical element divides the light of a point among many images.

@@ -21,6 +21,8 @@ constexpr double visible_snr = 5;         // Rose's criterion
 constexpr double largest_tried = 100e-6;  // largest diameter for which the visibility is tested [m]
 constexpr double smallest_tried = 10e-9;  // smallest diameter for which the visibility is tested [m]
 constexpr int sizes_a_decade = 150;       // diameters tested per decade, 1.5 % apart
+constexpr double least_facing = 1e-3;     // cosine of the camera's angle to the sheet's normal below which the sheet is
+                                          // seen edge-on [1]
 
 SizeSpread spread_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -34,7 +36,7 @@ SizeSpread spread_of(std::vector<double> values) {
 /// parallel.
 Vec3d place_in_sheet(Pose<double> const& camera, Pose<double> const& sheet) {
   double const along = dot(camera.z, sheet.z);
-  if (std::abs(along) < 1e-3) return sheet.origin;
+  if (std::abs(along) < least_facing) return sheet.origin;
   return camera.origin + dot(sheet.origin - camera.origin, sheet.z) / along * camera.z;
 }
 
@@ -151,7 +153,7 @@ ExpectedParticles expected_particles(Setup const& setup) {
   Pose<double> const camera = setup.camera_pose(), sheet = laser_sheet(piv.laser).pose[0];
   Vec3d const place = place_in_sheet(camera, sheet);
   double const distance = distance_of_sheet(setup);
-  double const pitch = setup.camera.pixel_pitch, facing = std::max(1e-3, std::abs(dot(camera.z, sheet.z)));
+  double const pitch = setup.camera.pixel_pitch, facing = std::max(least_facing, std::abs(dot(camera.z, sheet.z)));
   double const working_f_number =
       scene.imaging.entrance_pupil > 0 ? scene.imaging.image_distance / scene.imaging.entrance_pupil : 0;
 
@@ -163,9 +165,11 @@ ExpectedParticles expected_particles(Setup const& setup) {
   expected.diffraction_px = image(0).diffraction_px;
   auto const sheet_area_of_a_pixel = [&] {
     Pose<double> const there{place, sheet.x, sheet.y, sheet.z};
-    auto const seen = setup.has_closed_form_layout() ? std::nullopt : scene.camera.see({}, there);
-    double const area = seen ? std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x) : 0;
-    return area > 0 ? 1 / area : std::pow(pitch / magnification, 2) / facing;
+    auto const seen = scene.camera.see({}, there);
+    double const facing_area = std::pow(magnification / pitch, 2);  // image area of a facing sheet [px^2/m^2]
+    double const area =
+        seen ? std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x) : facing * facing_area;
+    return 1 / std::max(area, least_facing * facing_area);
   };
   double const half_sheet = piv.laser.thickness / 2 / facing;
   expected.image_diameter_px = image(0).diameter_px();

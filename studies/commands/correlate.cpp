@@ -22,6 +22,7 @@
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/correlate_sequence.h"
+#include "studies/compare/exchanged_frames.h"
 
 namespace gladstone::inline commands {
 

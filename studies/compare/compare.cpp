@@ -10,6 +10,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/errors/deformed_window_truth.h"
 #include "render/base/error.h"
+#include "render/base/parallel.h"
 #include "render/files/stop_point.h"
 #include "render/method.h"
 #include "render/rays/rays_renderer.h"
@@ -86,15 +87,16 @@ GroundTruth truth_at_points(Scene const& scene, RenderPlan const& plan, Renderer
                             std::vector<Vec2d> const& centres_px, TruthAt at, RenderTheory theory) {
   DotPattern virtual_dots;
   virtual_dots.shape = scene.dots.shape;
-  for (Vec2d const& c : centres_px) virtual_dots.centre.push_back(scene.to_target(c));
+  virtual_dots.centre.resize(centres_px.size());
+  parallel_for(centres_px.size(), [&](std::size_t i) { virtual_dots.centre[i] = scene.to_target(centres_px[i]); });
   auto const correct = [&](GroundTruth const& truth) {
-    for (std::size_t i = 0; i < centres_px.size(); ++i) {
+    parallel_for(centres_px.size(), [&](std::size_t i) {
       Vec2d const shift = at == TruthAt::mid_position ? 0.5 * truth.displacement_px[i] : Vec2d{};
       Vec2d const miss = centres_px[i] - (truth.reference_px[i] + shift);
-      if (!std::isfinite(miss.x) || !std::isfinite(miss.y)) continue;
+      if (!std::isfinite(miss.x) || !std::isfinite(miss.y)) return;
       Vec2d const seen = truth.reference_px[i];
       virtual_dots.centre[i] = virtual_dots.centre[i] + (scene.to_target(seen + miss) - scene.to_target(seen));
-    }
+    });
   };
   // Both corrections use few rays, the first with point dots, the second with dots of the target's size.
   Scene rough = scene;
@@ -107,24 +109,26 @@ GroundTruth truth_at_points(Scene const& scene, RenderPlan const& plan, Renderer
   return renderer.render(scene, plan, virtual_dots, RenderImages::no, theory).truth;
 }
 
-std::vector<Vec2d> ideal_lens_truth(Scene scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point) {
+std::vector<Vec2d> ideal_lens_truth(Scene const& scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point) {
   if (plan.method == RenderMethod::focused_dots && scene.setup.lens.focus == Focus::target)
     return point.displacement_px;
   DotPattern virtual_dots;
   virtual_dots.half_size = scene.dots.half_size;
   virtual_dots.shape = scene.dots.shape;
   for (Vec3d const& p : point.position_m) virtual_dots.centre.push_back({p.x, p.y});
-  // On the optical axis, the ideal lens can be rendered by the fast renderer, unless rays are requested.
-  bool const focusable = scene.setup.has_closed_form_layout() && !scene.chief_rays_only();
-  bool const by_rays = scene.setup.render.method == RenderMethod::rays || plan.method != resolve_render_method(scene);
-  if (!focusable || by_rays) return ideal_displacements(scene, plan, virtual_dots);
-  plan.method = RenderMethod::automatic;
   // Retain the sensor's position, and so the magnification; change the focal length to focus on the target.
-  scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
-  scene.setup.lens.focus = Focus::target;
-  scene.setup.lens.f_number = scene.setup.lens.focal_length / scene.imaging.entrance_pupil;
-  scene.camera = build_camera(scene.setup);
-  return renderer.render(scene, plan, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
+  Scene focused = scene;
+  LensSetup& lens = focused.setup.lens;
+  lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
+  lens.focus = Focus::target;
+  lens.f_number = lens.focal_length / scene.imaging.entrance_pupil;
+  // Use the fast renderer if it is valid, unless rays are requested or take less time.
+  bool const by_rays = plan.method != resolve_render_method(scene);
+  if (by_rays || resolve_render_method(focused) != RenderMethod::focused_dots)
+    return ideal_displacements(scene, plan, virtual_dots);
+  plan.method = RenderMethod::automatic;
+  focused.camera = build_camera(focused.setup);
+  return renderer.render(focused, plan, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
 }
 
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,

@@ -25,6 +25,7 @@
 #include "studies/case/peak_locking.h"
 #include "studies/case/truth_file.h"
 #include "studies/case/warning_log.h"
+#include "studies/compare/exchanged_frames.h"
 #include "studies/compare/tracked_dots.h"
 
 namespace gladstone::inline compare {
@@ -264,28 +265,6 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
              twice.size(), pairs.size)});
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
-}
-
-void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sources) {
-  namespace fs = std::filesystem;
-  fs::path reference, flow;
-  for (SourceFiles::Source const& source : sources.all()) {
-    if (source.name == "reference") reference = source.path;
-    if (source.name == "flow") flow = source.path;
-  }
-  bool exchanged = reference.filename() == case_file::flow && flow.filename() == case_file::reference;
-  std::string const truth = (reference.parent_path() / case_file::truth).string();
-  if (std::error_code error; !exchanged && !reference.empty() && fs::exists(truth, error)) {
-    Hdf5Reader const file(truth);
-    std::string const first = file.attribute("reference_sha256"), second = file.attribute("flow_sha256");
-    exchanged =
-        !first.empty() && first != second && sources.sha256("reference") == second && sources.sha256("flow") == first;
-  }
-  if (!exchanged) return;
-  field.warnings.push_back({WarningCode::inconsistent, "",
-                            fmt::format("the frames are exchanged: {} is the flow frame and {} the reference, so that "
-                                        "every displacement has the opposite sign; give the reference first",
-                                        reference.string(), flow.string())});
 }
 
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,

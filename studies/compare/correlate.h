@@ -63,10 +63,6 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
 /// Adds the images of masks and preprocessing steps to `sources` as preparation_1, preparation_2, ...
 void add_preparation(CorrelationSettings const& settings, SourceFiles& sources);
 
-/// Adds a warning if frames A and B of a case were exchanged, according to the hashes in truth.h5 of the same folder or
-/// to their file names.
-void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sources);
-
 /// Correlates the frames of a CASE and writes `output` (.h5 or .csv) with the frames' hashes.
 /// @param output  path; empty: CASE/vectors.h5
 /// @param other   settings that replace those of the case; null: those of the case

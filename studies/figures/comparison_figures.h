@@ -8,8 +8,8 @@
 
 namespace gladstone::inline figures {
 
-/// Figures of a comparison by their file names: displacement_maps and error_against_gradient, for vectors on a grid,
-/// error_histograms and error_budget.
+/// Figures of a comparison by their file names, which case_file::derived (studies/case/case_files.h) lists. Maps and
+/// local gradients require vectors on a grid.
 std::vector<NamedFigure> make_comparison_figures(Comparison const& comparison);
 
 /// Draws the figures of a comparison into a folder.

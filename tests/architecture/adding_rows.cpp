@@ -36,6 +36,18 @@ std::vector<Row> const& rows() {
        // views are those of a plenoptic camera, and so is what an overview says about them
        {{"LensletSetup",
          {"studies/case/plenoptic_views.h", "studies/case/plenoptic_views.cpp", "studies/design/setup_overview.cpp"}}}},
+      {"lens surface",
+       "render/optics",
+       std::regex("struct (\\w+) \\{\\n(?:[^\\n]*\\n){1,8}?  GLADSTONE_HD T sag\\("),
+       {"render/optics/lens_surface.h", "render/optics/lens.cpp"},
+       // the number of their terms limits what files may prescribe; faces of plates and stops are planes
+       {{"EvenAsphere",
+         {"render/optics/prescription_readers/zmx_surface.cpp", "render/optics/prescription_readers/seq_surface.cpp",
+          "render/optics/prescription_readers/toml.cpp"}},
+        {"RadialAsphere", {"render/optics/prescription.h", "render/optics/prescription_readers/zmx_surface.cpp"}},
+        {"Quadric",
+         {"render/optics/even_asphere.h", "render/optics/radial_asphere.h", "render/optics/elements/glass_plate.h",
+          "render/scene/build_camera.cpp"}}}},
       {"reader of fields",
        "render/files/fields/readers",
        std::regex(

@@ -88,6 +88,17 @@ TEST(Figures, AreNamedByThoseThatDrawThem) {
   EXPECT_GE(figures, 15U) << "the expression no longer finds the figures";
 }
 
+// The figures of a comparison are removed when their case is rendered again.
+TEST(Figures, OfAComparisonAreDerivedFilesOfTheCase) {
+  std::string const &made = sources().at("studies/figures/comparison_figures.cpp"),
+                    &listed = sources().at("studies/case/case_files.h");
+  std::regex const figure("figures\\.push_back\\(\\s*\\{\"(\\w+)\"");
+  std::size_t figures = 0;
+  for (std::sregex_iterator match(made.begin(), made.end(), figure), end; match != end; ++match, ++figures)
+    EXPECT_NE(listed.find('"' + match->str(1) + ".png\""), std::string::npos) << match->str(1);
+  EXPECT_GE(figures, 4U) << "the expression no longer finds the figures";
+}
+
 // A new formula touches the rows of the sheet and the table of the page, which have the same numbers.
 TEST(DesignSheet, HasTheFormulasOfItsPage) {
   auto const numbers = [](std::string const& text, std::regex const& number) {

@@ -5,6 +5,7 @@
 
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/particle_warnings.h"
 #include "tests/scene/read_setup_text.h"
 #include "tests/support/expect_error.h"
 

@@ -5,6 +5,7 @@
 
 #include "render/base/units.h"
 #include "render/scene/cross_check.h"
+#include "render/scene/cross_check_particles.h"
 #include "render/scene/particle_scene.h"
 #include "render/scene/setup.h"
 

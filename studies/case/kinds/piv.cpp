@@ -3,6 +3,7 @@
 
 #include "render/rays/ray_requirement.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/particle_warnings.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/expected_particles.h"
