@@ -7,6 +7,7 @@
 
 #include "render/base/units.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/read_setup.h"
 
 namespace gladstone::inline scene {
 namespace {
