@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
+#include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/scene/particle_scene.h"
 
