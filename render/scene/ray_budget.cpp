@@ -25,12 +25,12 @@ RenderPlan with_step(Scene const& scene, IntegrationStep const& step) {
 }
 
 double ray_seconds(Scene const& scene, RenderPlan const& plan) {
-  // Times [s]: emission, stop, ideal lens and sums; a step of the ray through the medium; a pixel of the PSF; a further
-  // surface.
+  // Times [s]: emission, lens and sums; a step of the ray through the medium; a pixel of the PSF; a lens surface.
   constexpr double a_ray = 0.6e-6, a_step = 0.12e-6, a_pixel = 1.4e-9, a_surface = 60e-9;
   std::optional<AiryTable> airy;
   double const width = 2 * make_spot(scene, airy).half_width() + 1;
-  double const surfaces = static_cast<double>(scene.camera.elements.size()) - 2;
+  double const surfaces =
+      scene.setup.has_closed_form_layout() ? 0.0 : static_cast<double>(scene.camera.elements.size());
   return a_ray + a_step * scene.steps_across(plan.step) +
          frame_count * (a_pixel * width * width + a_surface * surfaces);
 }

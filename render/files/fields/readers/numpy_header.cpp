@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "render/base/error.h"
+#include "render/base/text.h"
 
 namespace gladstone::inline files {
 namespace {
