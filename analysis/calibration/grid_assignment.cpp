@@ -127,7 +127,7 @@ struct Span {
   int low = left, high = right;
 };
 
-Span span_of(Places const& places) {
+Span find_span(Places const& places) {
   Span span;
   for (auto const& [place, dot] : places) {
     span = {std::min(span.left, place.first), std::max(span.right, place.first), std::min(span.low, place.second),
@@ -185,7 +185,7 @@ AssignedDots assign_to_grid(std::vector<DetectedDot> const& dots, CalibrationGri
   Places places = spread(dots, *beginning);
   SmoothGrid smooth = clean(dots, places);
   if (places.empty()) return assigned;
-  Span const span = span_of(places);
+  Span const span = find_span(places);
   assigned.columns = span.right - span.left + 1;
   assigned.rows = span.high - span.low + 1;
   assigned.strangers = std::move(smooth.strangers);

@@ -17,7 +17,7 @@ constexpr int most_rounds = 20;
 
 /// Returns the design matrix: products of powers of i and j up to a total order, both divided by the largest |i| or
 /// |j|.
-Eigen::MatrixXd terms_of(std::vector<GridDot> const& dots, int order) {
+Eigen::MatrixXd make_design_matrix(std::vector<GridDot> const& dots, int order) {
   int most = 1;
   for (GridDot const& dot : dots) most = std::max({most, std::abs(dot.i), std::abs(dot.j)});
   Eigen::MatrixXd terms(static_cast<Eigen::Index>(dots.size()), (order + 1) * (order + 2) / 2);
@@ -33,8 +33,8 @@ Eigen::MatrixXd terms_of(std::vector<GridDot> const& dots, int order) {
 }
 
 /// Returns the residuals of each column of values from a polynomial in (i, j).
-Eigen::MatrixXd residuals_of(std::vector<GridDot> const& dots, Eigen::MatrixXd const& values, int order) {
-  Eigen::MatrixXd const terms = terms_of(dots, order);
+Eigen::MatrixXd compute_residuals(std::vector<GridDot> const& dots, Eigen::MatrixXd const& values, int order) {
+  Eigen::MatrixXd const terms = make_design_matrix(dots, order);
   return values - terms * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(values);
 }
 
@@ -44,7 +44,7 @@ double median_of(Eigen::VectorXd values) {
   return *middle;
 }
 
-int order_of(std::size_t dots) { return dots >= least_for_cubic ? 3 : 2; }
+int choose_order(std::size_t dots) { return dots >= least_for_cubic ? 3 : 2; }
 
 Eigen::MatrixXd places_of(std::vector<GridDot> const& dots) {
   Eigen::MatrixXd places(static_cast<Eigen::Index>(dots.size()), 2);
@@ -61,8 +61,8 @@ Eigen::MatrixXd diameters_of(std::vector<GridDot> const& dots) {
 
 /// Returns the image distance between neighbouring dots along the grid axis where this distance is shorter, from a
 /// linear fit [px].
-double spacing_of(std::vector<GridDot> const& dots) {
-  Eigen::MatrixXd const terms = terms_of(dots, 1), places = places_of(dots);
+double estimate_spacing(std::vector<GridDot> const& dots) {
+  Eigen::MatrixXd const terms = make_design_matrix(dots, 1), places = places_of(dots);
   Eigen::MatrixXd const map = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(places);
   int most = 1;
   for (GridDot const& dot : dots) most = std::max({most, std::abs(dot.i), std::abs(dot.j)});
@@ -87,14 +87,14 @@ bool remove_larger(SmoothGrid& grid, Eigen::VectorXd const& size, double limit) 
 
 bool remove_misplaced(SmoothGrid& grid) {
   Eigen::VectorXd const size =
-      residuals_of(grid.dots, places_of(grid.dots), order_of(grid.dots.size())).rowwise().norm();
+      compute_residuals(grid.dots, places_of(grid.dots), choose_order(grid.dots.size())).rowwise().norm();
   double const deviation = median_of(size) / 1.1774;  // median of a Rayleigh distribution of unit scale
-  return remove_larger(grid, size, std::max(deviations * deviation, least_of_spacing * spacing_of(grid.dots)));
+  return remove_larger(grid, size, std::max(deviations * deviation, least_of_spacing * estimate_spacing(grid.dots)));
 }
 
 bool remove_missized(SmoothGrid& grid) {
   Eigen::MatrixXd const diameters = diameters_of(grid.dots);
-  Eigen::VectorXd const size = residuals_of(grid.dots, diameters, 1).cwiseAbs().rowwise().norm();
+  Eigen::VectorXd const size = compute_residuals(grid.dots, diameters, 1).cwiseAbs().rowwise().norm();
   double const least = std::max(least_of_diameter * median_of(diameters.col(0)), least_diameter_px);
   return remove_larger(grid, size, std::max(deviations * 1.4826 * median_of(size), least));
 }
@@ -107,8 +107,8 @@ SmoothGrid remove_inconsistent_spots(std::vector<GridDot> dots) {
     if (!remove_missized(grid) && !remove_misplaced(grid)) break;
   }
   if (grid.dots.size() < least_dots) return grid;
-  int const order = order_of(grid.dots.size());
-  Eigen::MatrixXd const residuals = residuals_of(grid.dots, places_of(grid.dots), order);
+  int const order = choose_order(grid.dots.size());
+  Eigen::MatrixXd const residuals = compute_residuals(grid.dots, places_of(grid.dots), order);
   Eigen::Index const coefficients = (order + 1) * (order + 2) / 2;
   auto const freedom = static_cast<double>(2 * (residuals.rows() - coefficients));
   grid.rms_px = std::sqrt(residuals.squaredNorm() / freedom);

@@ -24,7 +24,7 @@ Eigen::MatrixXd normalisation(Eigen::MatrixXd const& points) {
   return similarity;
 }
 
-Eigen::MatrixXd world_of(CalibrationPoints const& points) {
+Eigen::MatrixXd world_matrix(CalibrationPoints const& points) {
   Eigen::MatrixXd world(3, static_cast<Eigen::Index>(points.size()));
   Eigen::Index column = 0;
   for (Vec3d const& point : points.world) world.col(column++) << point.x, point.y, point.z;
@@ -41,7 +41,7 @@ Eigen::MatrixXd pixels_of(CalibrationPoints const& points) {
 /// Returns the projection matrix, with the sign for which the third homogeneous coordinate (the depth) of the points is
 /// positive.
 Camera projection(CalibrationPoints const& points) {
-  Eigen::MatrixXd const world = world_of(points), pixels = pixels_of(points);
+  Eigen::MatrixXd const world = world_matrix(points), pixels = pixels_of(points);
   Eigen::MatrixXd const of_world = normalisation(world), of_pixels = normalisation(pixels);
   Eigen::MatrixXd const X = of_world * world.colwise().homogeneous(), x = of_pixels * pixels.colwise().homogeneous();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * X.cols(), 12);
@@ -89,13 +89,13 @@ PinholeCamera linear_pinhole(CalibrationPoints const& points) {
 }
 
 double linear_residual_px(CalibrationPoints const& points) {
-  Eigen::MatrixXd const seen = projection(points) * world_of(points).colwise().homogeneous();
+  Eigen::MatrixXd const seen = projection(points) * world_matrix(points).colwise().homogeneous();
   Eigen::MatrixXd const fitted = seen.colwise().hnormalized();
   return (pixels_of(points) - fitted).norm() / std::sqrt(static_cast<double>(fitted.size()));
 }
 
 bool on_one_plane(CalibrationPoints const& points) {
-  Eigen::MatrixXd world = world_of(points);
+  Eigen::MatrixXd world = world_matrix(points);
   Eigen::VectorXd const mean = world.rowwise().mean();
   world.colwise() -= mean;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const solver(world * world.transpose());

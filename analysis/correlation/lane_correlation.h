@@ -32,7 +32,7 @@ class LanePlane {
   std::vector<FloatLanes> values_;
 };
 
-/// View of the plane of one lane.
+/// View of the correlation plane of the window in one SIMD lane.
 struct LanePlaneView {
   LanePlane const& plane;
   int lane;

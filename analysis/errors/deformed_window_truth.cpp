@@ -28,8 +28,8 @@ std::vector<Vec2d> centres_of(InterrogationGrid const& grid) {
 }
 
 /// Computes the predictor of the next pass from the displacements at the grid nodes of the current pass.
-DensePredictor predictor_of(InterrogationGrid const& grid, std::span<Vec2d const> measured, double smoothing,
-                            int columns, int rows) {
+DensePredictor make_predictor(InterrogationGrid const& grid, std::span<Vec2d const> measured, double smoothing,
+                              int columns, int rows) {
   std::vector<GridVector> vectors(measured.size());
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     vectors[i].displacement = measured[i];
@@ -59,8 +59,8 @@ WindowTruth deformed_window_truth(std::span<Vec2d const> reference_px, std::span
   for (int pass = 0; !schedule.is_last(pass); ++pass) {
     InterrogationGrid const grid = schedule.grid(pass, columns, rows);
     if (grid.size() == 0) continue;
-    predictor.field = predictor_of(grid, measured(centres_of(grid), grid.window_px).displacement_px,
-                                   schedule.smoothing(pass), columns, rows);
+    predictor.field = make_predictor(grid, measured(centres_of(grid), grid.window_px).displacement_px,
+                                     schedule.smoothing(pass), columns, rows);
     for (std::size_t i = 0; i < left.size(); ++i) left[i] = displacement_px[i] - predictor.at(position[i]);
   }
   return measured(centres_px, settings.window_px.back());

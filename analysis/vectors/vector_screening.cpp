@@ -32,7 +32,7 @@ struct Extent {
   }
 };
 
-Extent extent_of(DisplacementField const& screened) {
+Extent find_extent(DisplacementField const& screened) {
   Extent extent;
   for (Vec2d const& p : screened.position_px) extent.add(p);
   return extent;
@@ -126,7 +126,7 @@ std::string reason_to_reject_positions(DisplacementField const& screened, Reject
         left_out.outside_image, left_out.outside_image + screened.size(), image,
         Extent{left_out.low_px, left_out.high_px}.text());
   }
-  Extent const extent = extent_of(screened);
+  Extent const extent = find_extent(screened);
   Vec2d const size = extent.high - extent.low;
   if (static_cast<double>(screened.size()) > 2.0 * (size.x + 1.0) * (size.y + 1.0)) {
     return fmt::format("{} vectors are closer together than pixels ({}); export positions in px, not in mm",
@@ -142,7 +142,7 @@ std::string reason_to_reject_positions(DisplacementField const& screened, Reject
 
 std::string describe_suspect_positions(DisplacementField const& screened, int image_columns, int image_rows) {
   constexpr std::size_t fewest = 16;  // minimum number of vectors for which the extent of a grid is judged
-  Extent const extent = extent_of(screened);
+  Extent const extent = find_extent(screened);
   Vec2d const size = extent.high - extent.low;
   double const share = size.x * size.y / (static_cast<double>(image_columns) * image_rows);
   if (screened.size() < fewest || share >= 0.05) return {};

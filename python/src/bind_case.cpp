@@ -43,7 +43,7 @@ nb::list render(SetupText const& setup, std::string const& device, nb::handle pr
   return cases;
 }
 
-nb::dict accuracy_of(PairCase const& self) {
+nb::dict make_accuracy_dict(PairCase const& self) {
   TruthAccuracy const& accuracy = self.accuracy();
   nb::dict all;
   all["rms_px"] = accuracy.rms_px;
@@ -73,7 +73,7 @@ void bind_case(nb::module_& module) {
              auto& held = nb::cast<PairCase&>(self);
              return view_of(held.images().data(), {2, rows(held.loaded()), columns(held.loaded())}, self);
            })
-      .def("accuracy", &accuracy_of)
+      .def("accuracy", &make_accuracy_dict)
       .def("summary", [](PairCase& self) { return run([&] { return self.summary(); }); })
       .def("resolved", &PairCase::resolved)
       .def(

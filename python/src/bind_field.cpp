@@ -184,7 +184,8 @@ nb::object field_column(MeasuredField const& self, std::string const& name) {
 }  // namespace
 
 void bind_field(nb::module_& module) {
-  nb::class_<MeasuredField>(module, "MeasuredField", "Displacement vectors with their origin.")
+  nb::class_<MeasuredField>(module, "MeasuredField",
+                            "Displacement vectors, with the settings, device and duration of their measurement.")
       .def_prop_ro("size", [](MeasuredField const& self) { return self.field.size(); })
       .def_prop_ro("columns", [](MeasuredField const& self) { return self.field.columns; })
       .def_prop_ro("rows", [](MeasuredField const& self) { return self.field.rows; })

@@ -35,7 +35,7 @@ class ArenaPool {
     std::lock_guard const lock(mutex_);
     std::vector<Arena>& idle = idle_[threads];
     if (idle.empty()) {
-      idle.reserve(idle.capacity() + 1);  // a place for every arena, so that release() allocates nothing
+      idle.reserve(idle.capacity() + 1);  // reserve a place for every arena, so that release() allocates nothing
       return std::make_unique<tbb::task_arena>(threads);
     }
     Arena arena = std::move(idle.back());

@@ -33,7 +33,7 @@ Record& record() {
 thread_local int unguarded = 0;
 thread_local int writing_protected = 0;
 
-FileId id_of(struct stat const& file) { return {file.st_dev, file.st_ino}; }
+FileId file_id(struct stat const& file) { return {file.st_dev, file.st_ino}; }
 
 }  // namespace
 
@@ -60,8 +60,8 @@ ProtectedWritePermit::~ProtectedWritePermit() { --writing_protected; }
 void record_input(std::string const& path, struct stat const& file) {
   if (unguarded > 0) return;
   std::lock_guard const lock(record().mutex);
-  if (record().guards == 0 || record().outputs.contains(id_of(file))) return;
-  record().inputs.emplace(id_of(file), path);
+  if (record().guards == 0 || record().outputs.contains(file_id(file))) return;
+  record().inputs.emplace(file_id(file), path);
 }
 
 void record_output(int descriptor) {
@@ -69,15 +69,15 @@ void record_output(int descriptor) {
   if (::fstat(descriptor, &file) != 0) return;
   std::lock_guard const lock(record().mutex);
   if (record().guards == 0) return;
-  record().inputs.erase(id_of(file));  // the inode number of a removed input may be reused
-  record().outputs.insert(id_of(file));
+  record().inputs.erase(file_id(file));  // the inode number of a removed input may be reused
+  record().outputs.insert(file_id(file));
 }
 
 void refuse_recorded_input(std::string const& path, std::string const& asked) {
   struct stat file {};
   if (::stat(path.c_str(), &file) != 0) return;
   std::lock_guard const lock(record().mutex);
-  auto const input = record().inputs.find(id_of(file));
+  auto const input = record().inputs.find(file_id(file));
   if (input == record().inputs.end()) return;
   throw OutputError(asked, "would be overwritten, but is an input of this command" +
                                (asked == input->second ? std::string() : " (as " + input->second + ')') +

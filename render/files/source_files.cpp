@@ -51,7 +51,7 @@ void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& path, 
   }
 }
 
-std::string hash_of(std::string const& path, SourceFiles::Holds holds) {
+std::string compute_hash(std::string const& path, SourceFiles::Holds holds) {
   switch (holds) {
     case SourceFiles::Holds::pixels:
       return pixel_sha256(path);
@@ -119,7 +119,7 @@ std::string byte_sha256(std::string const& path) {
 }
 
 void SourceFiles::add(std::string name, std::string path, Holds holds) {
-  std::string hash = hash_of(path, holds);
+  std::string hash = compute_hash(path, holds);
   add(std::move(name), std::move(path), holds, std::move(hash));
 }
 
@@ -147,7 +147,7 @@ void SourceFiles::check() const {
     if (source.path.empty()) continue;
     std::string what = "the SHA-256 of its content differs";
     try {
-      if (hash_of(source.path, source.holds) == source.sha256) continue;
+      if (compute_hash(source.path, source.holds) == source.sha256) continue;
     } catch (DataError const& error) {  // the file was removed, or partly overwritten
       if (error.code() == ErrorCode::memory) throw;
       what = "it cannot be read any more: " + error.message();

@@ -71,11 +71,11 @@ double way_to(Bounds<double> const& bounds, Setup const& setup) {
   return (0.5 * (bounds.low.z + bounds.high.z) + setup.z_d) / setup.z_b();
 }
 
-NodeDensity density_of(Scene const& scene, Vec2d extent, int fineness) {
+NodeDensity choose_node_density(Scene const& scene, Vec2d extent, int fineness) {
   return NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, extent, fineness);
 }
 
-Bounds<double> bounds_of(Scene const& scene) {
+Bounds<double> medium_bounds(Scene const& scene) {
   return std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
 }
 
@@ -108,15 +108,15 @@ TableState table_state(Scene const& scene) {
   if (std::holds_alternative<NoMedium<double>>(scene.medium.view) || !(scene.medium.finest > 0)) {
     return TableState::no_medium;
   }
-  double const way = way_to(bounds_of(scene), scene.setup), stop = scene.imaging.entrance_pupil / 2;
+  double const way = way_to(medium_bounds(scene), scene.setup), stop = scene.imaging.entrance_pupil / 2;
   // A source's cone is integrated at a few points of the source and must not vary much between them.
   if ((1 - way) * scene.dots.half_size > 0.5 * std::max(scene.medium.finest, way * stop)) {
     return TableState::dots_too_wide;
   }
   Vec2d const extent = crossed_extent(scene.setup, way);
   // A finer table is built only if it has far fewer rays than the maximum, so that the fineness has no effect here.
-  return density_of(scene, extent, 1).rays(extent.x * extent.y) <= most_rays ? TableState::made
-                                                                             : TableState::field_too_fine;
+  return choose_node_density(scene, extent, 1).rays(extent.x * extent.y) <= most_rays ? TableState::made
+                                                                                      : TableState::field_too_fine;
 }
 
 DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern const& sources,
@@ -130,7 +130,7 @@ DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern
   }
   if (sources.centre.empty()) state = TableState::no_sources;
   if (state != TableState::made) return;
-  Bounds<double> const bounds = bounds_of(scene);
+  Bounds<double> const bounds = medium_bounds(scene);
   double const stop = scene.imaging.entrance_pupil / 2, way = way_to(bounds, scene.setup);
   FocusedSetupView const bench = dots.bench();
   table.way = way;
@@ -151,7 +151,7 @@ DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern
       high = {std::max(high.x, c.x), std::max(high.y, c.y)};
     }
   }
-  NodeDensity const density = density_of(scene, crossed_extent(scene.setup, way), dots.plan().fineness);
+  NodeDensity const density = choose_node_density(scene, crossed_extent(scene.setup, way), dots.plan().fineness);
   double const spacing_of_slopes = density.coarseness * density.spacing;
   double const reach = cone_reach(way, std::max(sources.half_size, scene.dots.half_size), stop) +
                        way * largest_aim_distance + 3 * spacing_of_slopes;

@@ -136,7 +136,7 @@ class AgfReader {
     if (!glass_) return;
     Glass glass = std::move(*glass_);
     glass_.reset();
-    std::string const fault = fault_of(glass);
+    std::string const fault = find_fault(glass);
     if (!fault.empty()) {
       content_.left_out.push_back({glass.name, {begun_.line, fault}});
       return;
@@ -148,7 +148,7 @@ class AgfReader {
 
   /// Returns the reason why a glass is unusable, or an empty string. The index must be plausible at one end or in the
   /// middle of the range only, as some formulas have a pole at an end.
-  static std::string fault_of(Glass const& glass) {
+  static std::string find_fault(Glass const& glass) {
     if (glass.coefficients.empty()) return "it has no coefficients (a line CD)";
     if (!(glass.shortest > 0 && glass.longest > glass.shortest)) return "it has no range of wavelengths (a line LD)";
     double const middle = 0.5 * (glass.shortest + glass.longest);

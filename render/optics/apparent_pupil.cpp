@@ -40,7 +40,7 @@ Vec2d paraxial_guess(Lens const& lens, RayOrigin const& origin) {
 }
 
 /// Returns the angles (x, y) between a direction, reversed if necessary to point in +z direction, and the axis [rad].
-Vec2d angles_of(Vec3d direction) {
+Vec2d direction_angles(Vec3d direction) {
   Vec2d const across = direction.z < 0 ? Vec2d{-direction.x, -direction.y} : Vec2d{direction.x, direction.y};
   double const sine = length(across);
   return sine > 0 ? std::atan2(sine, std::abs(direction.z)) / sine * across : Vec2d{};
@@ -66,7 +66,7 @@ std::optional<Vec2d> aim_from_stop(StopMapping const& sight) {
     auto const line = sight.trace_back(slope);
     auto const aim = line ? aim_of_line(*line) : std::nullopt;
     if (!aim) return std::nullopt;
-    return angles_of(line->direction) - angles_of(sight.origin.ray_through(*aim).direction);
+    return direction_angles(line->direction) - direction_angles(sight.origin.ray_through(*aim).direction);
   };
   Vec2d slope{};
   if (!aim_at(back, {}, slope)) return std::nullopt;

@@ -34,7 +34,7 @@ struct AxialBeam {
 };
 
 /// Returns a warning if a ray travels backwards through glass.
-std::optional<Warning> told_backwards(Lens const& lens, Ray<double> ray) {
+std::optional<Warning> warn_of_backward_ray(Lens const& lens, Ray<double> ray) {
   RayAccount<double> account;
   double begun = 0;  // optical path at the last surface that deflected the ray
   for (int i = 0; i < lens.view().count; ++i) {
@@ -64,7 +64,7 @@ std::optional<Warning> crossed_faces(Lens const& lens, double object_distance) {
   if (!beam) return std::nullopt;
   for (int k = 1; k <= beam_heights; ++k) {
     for (Vec2d const side : beam_sides) {
-      if (auto const told = told_backwards(lens, beam->at(k * within_disc / beam_heights, side))) return told;
+      if (auto const told = warn_of_backward_ray(lens, beam->at(k * within_disc / beam_heights, side))) return told;
     }
   }
   return std::nullopt;

@@ -14,7 +14,7 @@ constexpr std::size_t sampled = 256;  // number of particles whose scatter is me
 constexpr std::size_t keys = 4;       // number of sets of random numbers over which the scatter is measured
 
 /// Returns a sample of particles, spread evenly over the list.
-Particles some_of(Particles const& all) {
+Particles sample_particles(Particles const& all) {
   std::size_t const count = std::min(all.size(), sampled);
   Particles some = all;
   for (std::size_t i = 0; i < count; ++i) some.copy(i * all.size() / count, i);
@@ -35,7 +35,7 @@ std::vector<Vec2d> displacements(GroundTruth const& first, GroundTruth const& se
 /// unknown. Particles are traced with equal light, since the scattering of the sampled particles is not needed and
 /// their indices do not match those of scene.mie.
 double standard_error(Renderer& renderer, Scene const& scene, RenderPlan const& plan, Particles const& particles) {
-  Particles const some = some_of(particles);
+  Particles const some = sample_particles(particles);
   std::array<std::vector<Vec2d>, keys> found;
   for (std::size_t key = 0; key < keys; ++key) {
     Scene keyed = scene;

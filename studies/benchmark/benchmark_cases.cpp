@@ -20,7 +20,7 @@ constexpr int case_pixels = 1024;
 constexpr double per_window = 1.0 / 1024.0;  ///< density of one particle per 32 x 32 px [1/px^2]
 
 /// Derives a seed from a name: sum of the letters weighted by their positions.
-std::uint64_t seed_of(std::string const& name) {
+std::uint64_t derive_seed(std::string const& name) {
   std::uint64_t seed = 500000;
   for (std::size_t i = 0; i < name.size(); ++i) seed += (i + 1) * static_cast<unsigned char>(name[i]);
   return seed;
@@ -49,7 +49,7 @@ void add_random_flows(Add const& add) {
   constexpr Row rows[] = {{60.0, 0.1}, {40.0, 0.2}, {25.0, 0.3}, {20.0, 0.45}, {15.0, 0.6}, {12.0, 0.85}};
   for (int k = 0; k < 6; ++k) {
     std::string const name = fmt::format("kinematic_{}", k + 1);
-    RandomWaves const waves{rows[k].size_px, rows[k].peak_gradient, seed_of(name)};
+    RandomWaves const waves{rows[k].size_px, rows[k].peak_gradient, derive_seed(name)};
     double const density = k % 2 == 0 ? 0.075 : 0.035;
     add(name,
         fmt::format("random waves with features of {} px, gradients up to {} px/px, {} particles per px",
@@ -64,7 +64,7 @@ std::vector<BenchmarkCase> make_cases() {
                        ParticleSettings particles = {}) {
     int const size = flow ? case_pixels : RefractedTurbulence::pixels;
     particles.columns = particles.rows = size;
-    particles.seed = seed_of(name);
+    particles.seed = derive_seed(name);
     cases.push_back({name, what, particles, std::move(flow)});
   };
   DisplacementAt const uniform = uniform_flow({0.3, -0.3}), vortex = vortex_flow(100.0, case_pixels);

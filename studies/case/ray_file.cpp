@@ -82,7 +82,7 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
 
 /// Converts a row of a table of rays.
 /// @param place  location of the row, for messages
-Ray<double> ray_of(double const* v, std::string const& place, double farthest) {
+Ray<double> make_ray(double const* v, std::string const& place, double farthest) {
   Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
   if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {
     throw DataError(ErrorCode::out_of_range, place,
@@ -104,7 +104,7 @@ std::vector<Ray<double>> rays_of(std::vector<double> const& rows, std::string co
     std::string const place = fmt::format("{}:{}", name, i / 6);
     bool const finite = std::all_of(v, v + 6, [](double value) { return std::isfinite(value); });
     if (!finite) throw DataError(ErrorCode::syntax, place, "is not six finite numbers");
-    rays.push_back(ray_of(v, place, farthest));
+    rays.push_back(make_ray(v, place, farthest));
   }
   return rays;
 }
@@ -113,7 +113,7 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
   NumberTable file(path, "a table of rays with --rays", {"x_mm", "y_mm", "z_mm", "dx", "dy", "dz"});
   std::vector<Ray<double>> rays;
   while (auto const row = file.next()) {
-    Ray<double> const ray = ray_of(row->data(), file.place(), farthest);
+    Ray<double> const ray = make_ray(row->data(), file.place(), farthest);
     require_room(rays, path, "rays");
     rays.push_back(ray);
   }

@@ -99,7 +99,7 @@ class SequenceRendering {
   }
 
   void render(std::size_t number, bool first, SetupRenderer& setup, Renderer& renderer) {
-    add_pair(number, first, render_case_of(number, first, setup, renderer), true);
+    add_pair(number, first, render_one_case(number, first, setup, renderer), true);
   }
 
   Json summary(bool complete) const {
@@ -166,7 +166,7 @@ class SequenceRendering {
   }
 
   /// Renders the case of a pair. @return its entry in summary.json
-  Json render_case_of(std::size_t number, bool first, SetupRenderer& setup, Renderer& renderer) {
+  Json render_one_case(std::size_t number, bool first, SetupRenderer& setup, Renderer& renderer) {
     std::string fingerprint = hash_pair(setup, inputs_);  // hash the files before they are read for rendering
     if (!first) read_earlier_frames(number);
     std::optional<LogSilencer> silencer;

@@ -11,7 +11,7 @@ namespace gladstone::inline commands {
 
 /// Option or positional argument of a command, as --help shows it.
 struct ArgumentDescription {
-  std::vector<std::string> names;    ///< "-o", "--output"; of a positional argument its only name
+  std::vector<std::string> names;    ///< names of the option, "-o", "--output"; of a positional argument its only name
   std::string text;                  ///< description
   bool takes_value = false;          ///< false: a flag
   std::vector<std::string> choices;  ///< permitted values; empty: any value, for example the name of a file

@@ -77,7 +77,7 @@ struct GivenTable {
   }
 };
 
-std::vector<GivenTable> tables_of(std::string_view text) {
+std::vector<GivenTable> split_tables(std::string_view text) {
   std::vector<GivenTable> tables{{"", {}}};
   std::istringstream lines{std::string(text)};
   for (std::string line; std::getline(lines, line);) {
@@ -130,7 +130,7 @@ std::string complete_list(Template const& one) {
       "# Every key of the kind \"{}\" with its default. To change a key, remove the \"# \" before it and before the "
       "name of\n# its table.\n",
       one.kind);
-  std::vector<GivenTable> const given = tables_of(one.required ? one.required : *one.text);
+  std::vector<GivenTable> const given = split_tables(one.required ? one.required : *one.text);
   std::vector<SetupKeyTable> tables = setup_key_tables();
   for (SetupKeyTable& table : tables) {
     std::erase_if(table.keys, [&](SetupKey const& key) {

@@ -8,7 +8,7 @@ namespace gladstone::inline commands {
 
 /// Description of one key of a setup or study, from the tables of docs/reference/setup.md.
 struct SetupKey {
-  std::string path;           ///< "lens.f_number"; without the brackets of an array of tables
+  std::string path;           ///< path of the key, "lens.f_number"; without the brackets of an array of tables
   std::string unit;           ///< unit; "1": pure number; empty: not a number
   std::string default_value;  ///< TOML text of the default; empty: none, or default_words
   std::string default_words;  ///< "required", "none" or the default in words; empty: default_value

@@ -54,7 +54,7 @@ void read_shard(Arguments& arguments) {
 }
 
 /// Returns the device of the manifest. @throws DeviceError if the command line specifies another
-std::string device_of(Manifest const& cases, std::string const& wanted) {
+std::string planned_device(Manifest const& cases, std::string const& wanted) {
   std::string const planned = cases[0].device;
   if (wanted != "auto" && wanted != planned) {
     throw DeviceError(
@@ -210,7 +210,7 @@ int submit_study(Arguments const& arguments, GlobalOptions const& options, Manif
 int run_study(Arguments const& arguments, GlobalOptions const& options) {
   auto const start = std::chrono::steady_clock::now();
   Manifest const cases = read_manifest(arguments.run);
-  std::string const device = device_of(cases, options.device);
+  std::string const device = planned_device(cases, options.device);
   std::vector<std::size_t> const selected = selected_cases(cases.size(), arguments.selection);
   if (arguments.slurm.submit) return submit_study(arguments, options, cases, selected, device);
   std::vector<std::string> const gpus = select_gpus(arguments.devices, device);

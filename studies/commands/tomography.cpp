@@ -54,7 +54,8 @@ void add_input_options(CLI::App& app, TomographyArguments& given) {
   app.add_flag("--ray-truth", given.tomography.ray_truth, "Use the true displacement of the dots of rendered cases");
   app.add_option("--conventions", given.conventions, "Conventions of the vectors, see gladstone compare --help");
   app.add_option("--angles", given.angles_deg,
-                 "Angle of the volume about Y in each view [deg], separated by commas; default: i / views of --arc")
+                 "Angle of the volume about Y in each view [deg], separated by commas; default of view i: i times "
+                 "--arc, divided by the number of views")
       ->delimiter(',');
   app.add_option("--arc", given.arc_deg, "Range of the default angles [deg]")->capture_default_str();
   app.add_option("--reference", given.reference,

@@ -36,7 +36,7 @@ ExpectedView expected_view(Setup const& setup, double z, std::string const& name
   return {*middle, setup.target.spacing * seen->by_x, setup.target.spacing * seen->by_y};
 }
 
-CalibrationGrid grid_of(Setup const& setup) {
+CalibrationGrid make_calibration_grid(Setup const& setup) {
   Lattice const lattice(setup.target);
   return {lattice.half_columns, lattice.half_rows, lattice.spacing, setup.dot_diameter()};
 }
@@ -140,7 +140,7 @@ void warn_of_assignment(Calibration& calibration, AssignedDots const& assigned, 
 void add_plane(Calibration& calibration, PlateDots& all, Setup const& setup, std::string const& file,
                std::size_t plane) {
   DetectedDots const detected = detect_dots(read_plane(calibration, setup, file, plane));
-  CalibrationGrid const grid = grid_of(setup);
+  CalibrationGrid const grid = make_calibration_grid(setup);
   AssignedDots const assigned = assign_to_grid(detected.dots, grid, expected_view(setup, setup.planes[plane], file));
   CalibratedPlane& added = calibration.planes.back();
   added.found = detected.dots.size();
@@ -212,7 +212,7 @@ Calibration calibrate(CaseSetup const& loaded, std::string const& setup_path, st
   calibration.seed = setup.render.seed;
   PlateDots dots;
   dots.z = setup.planes;
-  dots.spacing = grid_of(setup).spacing;
+  dots.spacing = make_calibration_grid(setup).spacing;
   dots.dot_radius = setup.dot_diameter() / 2;
   dots.lens = lens_of(setup);
   for (std::size_t plane = 0; plane < setup.planes.size(); ++plane) {

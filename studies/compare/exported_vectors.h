@@ -14,7 +14,7 @@ namespace gladstone::inline compare {
 struct ExportedVectors {
   DisplacementField field;
   FileOrigin origin;
-  std::string format;       ///< "gladstone", "gladstone truth", "OpenPIV", ...
+  std::string format;       ///< name of the format: "gladstone", "gladstone truth", "OpenPIV", ...
   std::string conventions;  ///< conventions by which a foreign file was read, in the form of parse_conventions()
   bool foreign = false;     ///< written by another program
   bool complete = true;     ///< false: the file's header declares another number of vectors

@@ -10,7 +10,7 @@ namespace gladstone::inline compare {
 namespace {
 
 /// Returns the indices of every n-th of `count` rows or columns, centred.
-std::vector<int> every_nth_of(int count, int n) {
+std::vector<int> select_every_nth(int count, int n) {
   std::vector<int> stay;
   for (int i = (count - 1) % n / 2; i < count; i += n) stay.push_back(i);
   return stay;
@@ -27,7 +27,7 @@ int lattice_step(DisplacementField const& field, int least_apart_px) {
 DisplacementField every_nth(DisplacementField field, int n) {
   GLADSTONE_EXPECTS(n >= 1);
   if (n == 1 || field.columns == 0) return field;
-  std::vector<int> const columns = every_nth_of(field.columns, n), rows = every_nth_of(field.rows, n);
+  std::vector<int> const columns = select_every_nth(field.columns, n), rows = select_every_nth(field.rows, n);
   std::vector<std::size_t> kept;
   for (int const row : rows) {
     for (int const column : columns) kept.push_back(static_cast<std::size_t>(row * field.columns + column));

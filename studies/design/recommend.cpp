@@ -46,7 +46,7 @@ struct Search {
   }
 };
 
-std::vector<std::string> binding_of(DesignProblem const& problem, BranchOutcome const& best) {
+std::vector<std::string> list_active_limits(DesignProblem const& problem, BranchOutcome const& best) {
   std::vector<std::string> names;
   DesignPoint<double> const bench = design_point_at(best.branch, best.solution.logarithms);
   for (Limit const& limit : complete(problem, best.branch).limits) {
@@ -255,7 +255,7 @@ Recommendation recommend(Objective objective, std::vector<Limit> const& required
   if (!answer.feasible()) search_again(answer, problem, search);
   if (answer.feasible()) {
     add_costs_and_front(answer, problem, search);
-    answer.binding = binding_of(problem, answer.outcomes.front());
+    answer.binding = list_active_limits(problem, answer.outcomes.front());
   } else {
     std::vector<std::size_t> const conflict = smallest_conflict(problem, search);
     if (conflict.empty()) answer.without_requirements = search.solved({objective, {}}).front();

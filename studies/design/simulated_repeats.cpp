@@ -68,7 +68,7 @@ std::vector<Vec2d> sum_of(std::vector<Vec2d> a, std::vector<Vec2d> const& b, dou
 
 /// Returns the amplitude of a displacement relative to Eq. 9, by least squares over the vectors for which `counts` is
 /// finite.
-double share_of(std::vector<Vec2d> const& displacement, Repeats const& repeats, std::vector<Vec2d> const& counts) {
+double fit_amplitude(std::vector<Vec2d> const& displacement, Repeats const& repeats, std::vector<Vec2d> const& counts) {
   double product = 0, square = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (!is_finite(counts[i])) continue;
@@ -135,10 +135,10 @@ WaveShares compute_wave_shares(Repeats const& repeats, double wavelength, int wi
   std::vector<Vec2d> const error = mean_of(repeats.error);
   WaveShares shares;
   shares.wavelength = wavelength;
-  shares.cone = share_of(repeats.cone, repeats, error);
-  shares.refraction = share_of(repeats.refraction, repeats, error);
-  shares.lens = share_of(repeats.lens, repeats, error);
-  shares.measured.value = 1 + share_of(error, repeats, error);
+  shares.cone = fit_amplitude(repeats.cone, repeats, error);
+  shares.refraction = fit_amplitude(repeats.refraction, repeats, error);
+  shares.lens = fit_amplitude(repeats.lens, repeats, error);
+  shares.measured.value = 1 + fit_amplitude(error, repeats, error);
   // Noise projected on the wave: scatter of a mean over repeats, for the number of independent windows.
   double square = 0;
   for (std::size_t i = 0; i < error.size(); ++i)

@@ -63,8 +63,8 @@ struct BenchStudies {
   }
 };
 
-BenchStudies studies_of(std::string const& setup, DesignPoint<double> const& bench, std::size_t repeats,
-                        std::uint64_t seed) {
+BenchStudies make_studies(std::string const& setup, DesignPoint<double> const& bench, std::size_t repeats,
+                          std::uint64_t seed) {
   SetupDocument base = SetupDocument::from_text(setup, "recommended setup");
   CameraSetup const& camera = bench.given->camera;
   int const side =
@@ -79,7 +79,7 @@ BenchStudies studies_of(std::string const& setup, DesignPoint<double> const& ben
 
 /// Returns the wavelength at which the measured amplitude is 1/sqrt(2), by linear interpolation or extrapolation in the
 /// logarithm of the wavelength.
-Estimate resolution_of(std::vector<WaveShares> const& waves) {
+Estimate interpolate_resolution(std::vector<WaveShares> const& waves) {
   WaveShares const &a = waves[0], &b = waves[1];
   double const slope = (a.measured.value - b.measured.value) / std::log(a.wavelength / b.wavelength);
   if (!(slope > 0)) return {};
@@ -141,7 +141,7 @@ SimulatedDesign simulate(std::string const& setup, DesignPoint<double> const& be
       if (!simulated.failed.empty()) return;
     }
   };
-  BenchStudies const studies = studies_of(setup, bench, repeat_count, seed);
+  BenchStudies const studies = make_studies(setup, bench, repeat_count, seed);
   std::vector<Repeats> as_set_up, waves;
   Peaks peaks;
   run(studies.of({studies.own_medium()}, std::nullopt), as_set_up, &peaks);
@@ -165,7 +165,7 @@ SimulatedDesign simulate(std::string const& setup, DesignPoint<double> const& be
   add_errors(simulated, own, bench);
   simulated.waves = {compute_wave_shares(waves[0], wavelength, window_px),
                      compute_wave_shares(waves[1], shorter_wave * wavelength, window_px)};
-  simulated.resolution = resolution_of(simulated.waves);
+  simulated.resolution = interpolate_resolution(simulated.waves);
   return simulated;
 }
 

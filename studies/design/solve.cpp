@@ -41,7 +41,7 @@ void copy_derivatives(Jet const& value, std::size_t own, double* gradient) {
   for (std::size_t i = 0; i < own; ++i) gradient[i] = value.v[static_cast<Eigen::Index>(i)];
 }
 
-double objective_of(unsigned n, double const* x, double* gradient, void* data) {
+double evaluate_objective(unsigned n, double const* x, double* gradient, void* data) {
   auto const& task = *static_cast<Task const*>(data);
   if (task.slack) {
     if (gradient) {
@@ -62,7 +62,7 @@ double objective_of(unsigned n, double const* x, double* gradient, void* data) {
   return value.a;
 }
 
-void limits_of(unsigned m, double* result, unsigned n, double const* x, double* gradient, void* data) {
+void evaluate_limits(unsigned m, double* result, unsigned n, double const* x, double* gradient, void* data) {
   auto const& task = *static_cast<Task const*>(data);
   double const slack = task.slack ? x[n - 1] : 0;
   auto const& limits = task.problem->limits;
@@ -159,8 +159,9 @@ std::vector<double> minimised(Task& task, std::vector<double> x) {
   }
   optimizer.set_lower_bounds(low);
   optimizer.set_upper_bounds(high);
-  optimizer.set_min_objective(objective_of, &task);
-  optimizer.add_inequality_mconstraint(limits_of, &task, std::vector<double>(task.problem->limits.size(), tolerance));
+  optimizer.set_min_objective(evaluate_objective, &task);
+  optimizer.add_inequality_mconstraint(evaluate_limits, &task,
+                                       std::vector<double>(task.problem->limits.size(), tolerance));
   // Stop by the design variables alone: the slack stagnates at curved limits long before its minimum.
   optimizer.set_xtol_rel(1e-12);
   optimizer.set_maxeval(most_evaluations);

@@ -87,7 +87,7 @@ constexpr std::array formats{PictureFormat{".png", "pngcairo", "IEND", 1, ""},
                              PictureFormat{".pdf", "pdfcairo", "%%EOF", 1.0 / 96, "in"}};  // 96 px per inch, as in CSS
 
 /// Returns the format by file name extension; PNG for others.
-PictureFormat const& format_of(std::string const& path) {
+PictureFormat const& find_format(std::string const& path) {
   for (PictureFormat const& format : formats) {
     if (path.ends_with(format.ending)) return format;
   }
@@ -151,7 +151,7 @@ std::string GnuplotScript::add_table(std::vector<std::vector<double>> const& col
 
 void GnuplotScript::write(std::string const& path, int width_px, int height_px, std::string_view base_font) const {
   OutputFile output(path);
-  PictureFormat const& format = format_of(path);
+  PictureFormat const& format = find_format(path);
   add_file("script.gp", fmt::format("set encoding utf8\n"
                                     "set terminal {0} size {1}{3},{2}{3} font {4} noenhanced background '#ffffff'\n"
                                     "set output 'figure'\n{5}\nunset output\n",

@@ -15,7 +15,7 @@ namespace {
 
 using namespace plot;
 
-Palette palette_of(ColourScale scale) {
+Palette select_palette(ColourScale scale) {
   if (scale == ColourScale::diverging) return Palette::diverging;
   return scale == ColourScale::grey ? Palette::grey : Palette::sequential;
 }
@@ -46,7 +46,7 @@ std::vector<double> finite_values(Image<double> const& map) {
 }
 
 /// Returns the range of every panel, shared within its group.
-std::vector<ColourRange> ranges_of(std::vector<MapPanel> const& panels) {
+std::vector<ColourRange> determine_ranges(std::vector<MapPanel> const& panels) {
   std::map<std::string, std::vector<double>> values;
   auto const group = [&](std::size_t i) {
     return panels[i].range_group.empty() ? "panel " + std::to_string(i) : "group " + panels[i].range_group;
@@ -155,7 +155,7 @@ Panel make_map_panel(MapPanel const& from, MapAxes const& axes, MapLayout const&
   double const shift = 0.5 * (factor - 1);
   panel.map = Map{std::move(map),       axes.x_first + shift * axes.x_step,
                   factor * axes.x_step, axes.y_first + shift * axes.y_step,
-                  factor * axes.y_step, palette_of(from.scale),
+                  factor * axes.y_step, select_palette(from.scale),
                   range.lower,          range.upper};
   panel.map->ticks = colour_ticks(range);
   return panel;
@@ -167,7 +167,7 @@ ColourRange colour_range(Image<double> const& map, ColourScale scale) { return r
 
 Figure make_map_figure(MapFigure const& maps) {
   MapLayout const layout = map_layout(maps, first_map(maps));
-  std::vector<ColourRange> const ranges = ranges_of(maps.panels);
+  std::vector<ColourRange> const ranges = determine_ranges(maps.panels);
   int const count = static_cast<int>(maps.panels.size());
   int const left = MapLayout::edge + layout.axis_label + layout.left;
   int const cell_width = layout.left + layout.map_width + layout.right;

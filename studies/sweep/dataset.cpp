@@ -143,7 +143,7 @@ struct DatasetSizes {
 };
 
 /// @throws DataError if the truth of the cases differs in kind
-DatasetSizes sizes_of(KeptCases const& kept, std::string const& run) {
+DatasetSizes determine_sizes(KeptCases const& kept, std::string const& run) {
   DatasetSizes sizes;
   sizes.begin = {0};
   for (CaseWithImages const& one : kept.cases) {
@@ -223,7 +223,7 @@ void refuse_files_of_study(std::string const& run, std::string const& path) {
 PackedDataset pack_dataset(std::string const& run, std::string const& path, Renderer& renderer) {
   refuse_files_of_study(run, path);
   KeptCases const kept = find_kept(run);
-  DatasetSizes const sizes = sizes_of(kept, run);
+  DatasetSizes const sizes = determine_sizes(kept, run);
   std::string const study = (fs::path(run) / run_file::study).string();
   std::error_code error;
   SourceFiles sources;

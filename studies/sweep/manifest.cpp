@@ -44,7 +44,7 @@ bool has_hash(std::string_view line) {
 }
 
 /// Returns nullopt if the object is not a case of a gladstone manifest.
-std::optional<int> version_of(Json const& json) {
+std::optional<int> read_version(Json const& json) {
   if (!json.is_object() || !json.contains("manifest") || !json.contains("index")) return std::nullopt;
   Json const& version = json["manifest"];
   return version.is_number_integer() ? std::optional(version.get<int>()) : std::nullopt;
@@ -79,7 +79,7 @@ std::string place_of(std::string const& path, std::size_t index) { return fmt::f
 ManifestCase parse_line(std::string_view line, std::size_t index, std::string const& place) {
   Json const json = Json::parse(line, nullptr, false);
   if (!json.is_object()) damaged(place);
-  std::optional<int> const version = version_of(json);
+  std::optional<int> const version = read_version(json);
   if (!version) {
     throw DataError(ErrorCode::wrong_format, place,
                     "is not a line of a gladstone manifest (it has no \"manifest\" version and \"index\"); give the "
@@ -167,7 +167,7 @@ std::optional<int> read_manifest_version(InputFile const& file) {
   constexpr std::size_t most = std::size_t{64} << 20;
   text.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), most)));
   text.resize(file.read(0, text.data(), text.size()));
-  return version_of(Json::parse(text.substr(0, text.find('\n')), nullptr, false));
+  return read_version(Json::parse(text.substr(0, text.find('\n')), nullptr, false));
 }
 
 Manifest::Manifest(std::string const& path) : file_(path, "the folder of a planned study") {

@@ -8,7 +8,7 @@
 namespace gladstone::inline sweep {
 namespace {
 
-std::string description_of(std::string const& measure) {
+std::string describe_measure(std::string const& measure) {
   static std::map<std::string, std::string> const known{
       {"signal_px", "rms of the ray truth at the vectors that count, per component"},
       {"error_over_signal", "rms error against Eq. 9 (PIV: the flow) over signal_px"},
@@ -44,7 +44,7 @@ void add_measures(StudyTable const& table, std::vector<StudyColumn>& columns) {
     columns.push_back({table.measures[m],
                        [m](StudyRow const& row) { return row.measures[m]; },
                        {},
-                       description_of(table.measures[m])});
+                       describe_measure(table.measures[m])});
   }
 }
 

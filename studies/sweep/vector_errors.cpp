@@ -15,9 +15,9 @@ std::vector<std::size_t> kept_vectors(DisplacementField const& field) {
   bool const lattice = field.columns > 0 && field.rows > 0;
   std::size_t const columns = lattice ? static_cast<std::size_t>(field.columns) : field.size();
   std::size_t const rows = lattice ? static_cast<std::size_t>(field.rows) : 1;
-  auto const kept_of = [](std::size_t count, std::size_t step) { return (count + step - 1) / step; };
+  auto const count_kept = [](std::size_t count, std::size_t step) { return (count + step - 1) / step; };
   std::size_t step = 1;
-  while (kept_of(columns, step) * kept_of(rows, rows > 1 ? step : 1) > most_kept_vectors) ++step;
+  while (count_kept(columns, step) * count_kept(rows, rows > 1 ? step : 1) > most_kept_vectors) ++step;
   std::vector<std::size_t> kept;
   for (std::size_t row = 0; row < rows; row += step) {
     for (std::size_t column = 0; column < columns; column += step) kept.push_back(row * columns + column);

@@ -21,7 +21,7 @@ struct Remainder {
 };
 
 /// Deforms both frames by half of the displacement each, and computes the gradients of their mean and their difference.
-Remainder remainder_of(BsplineImage<float> const& a, BsplineImage<float> const& b, DenseFlow const& d) {
+Remainder compute_remainder(BsplineImage<float> const& a, BsplineImage<float> const& b, DenseFlow const& d) {
   std::size_t const pixels = d.u.size();
   GreyImage mean{d.columns, d.rows, std::vector<float>(pixels)};
   Remainder rest{std::vector<float>(pixels), std::vector<float>(pixels), std::vector<float>(pixels)};
@@ -75,7 +75,7 @@ void sweep(Remainder const& rest, DenseFlow const& from, int colour, DenseFlow& 
   });
 }
 
-BsplineImage<float> spline_of(GreyImage const& image) {
+BsplineImage<float> make_spline(GreyImage const& image) {
   return BsplineImage<float>(image.columns, image.rows, 3, [&](int i, int j) { return image(i, j); });
 }
 
@@ -87,9 +87,9 @@ DenseFlow horn_schunck_flow(GreyImage const& reference, GreyImage const& flow) {
   DenseFlow d(first.back().columns, first.back().rows);
   for (std::size_t level = first.size(); level-- > 0;) {
     if (level + 1 < first.size()) d = d.finer(first[level].columns, first[level].rows);
-    BsplineImage<float> const a = spline_of(first[level]), b = spline_of(second[level]);
+    BsplineImage<float> const a = make_spline(first[level]), b = make_spline(second[level]);
     for (int k = 0; k < deformations; ++k) {
-      Remainder const rest = remainder_of(a, b, d);
+      Remainder const rest = compute_remainder(a, b, d);
       DenseFlow const from = d;
       for (int s = 0; s < sweeps; ++s) {
         sweep(rest, from, 0, d);

@@ -27,7 +27,7 @@ bool is_harmless(std::string const& key) {
   return harmless.contains(key);
 }
 
-Outline outline_of(PrescriptionLine const& line, double unit, Outline::Kind kind, bool blocks) {
+Outline read_outline(PrescriptionLine const& line, double unit, Outline::Kind kind, bool blocks) {
   Vec2d const half{line.number_or_infinity(1) * unit, line.number_or_infinity(2) * unit};
   if (half.x > 0 && half.y > 0) return {kind, blocks, half, {}};
   throw DataError(ErrorCode::out_of_range, line.where,
@@ -48,9 +48,9 @@ bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& 
   if (key == "OBDC") {
     apertures.centre = {line.number(1) * unit, line.number(2) * unit};
   } else if (key == "SQAP" || key == "SQOB") {
-    apertures.outline = outline_of(line, unit, Outline::Kind::rectangle, key == "SQOB");
+    apertures.outline = read_outline(line, unit, Outline::Kind::rectangle, key == "SQOB");
   } else if (key == "ELAP" || key == "ELOB") {
-    apertures.outline = outline_of(line, unit, Outline::Kind::ellipse, key == "ELOB");
+    apertures.outline = read_outline(line, unit, Outline::Kind::ellipse, key == "ELOB");
   } else if (key == "CLAP" || key == "FLAP" || key == "OBSC") {
     double const least = line.number(1) * unit, largest = line.number_or_infinity(2) * unit;
     if (!(least >= 0 && largest >= least)) {
