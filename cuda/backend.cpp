@@ -112,7 +112,7 @@ CopiedFrames copy_frames(ImageSamples const& reference, ImageSamples const& flow
   return {std::move(frames), {not_finite[0], not_finite[1]}};
 }
 
-std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const& problem) {
+std::unique_ptr<SartVolume> make_volume(SartProblem const& problem) {
   require_device();
   return make_cuda_volume(problem);
 }

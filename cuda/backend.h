@@ -57,6 +57,6 @@ std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings)
 CopiedFrames copy_frames(ImageSamples const& reference, ImageSamples const& flow);
 
 /// Creates the volume of a tomographic reconstruction on the GPU. @throws DeviceError if no device is usable
-std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const& problem);
+std::unique_ptr<SartVolume> make_volume(SartProblem const& problem);
 
 }  // namespace gladstone::cuda

@@ -29,8 +29,6 @@ std::unique_ptr<Correlator> make_correlator(CorrelationSettings const&) { throw 
 
 CopiedFrames copy_frames(ImageSamples const&, ImageSamples const&) { throw DeviceError(device_state().text); }
 
-std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const&) {
-  throw DeviceError(device_state().text);
-}
+std::unique_ptr<SartVolume> make_volume(SartProblem const&) { throw DeviceError(device_state().text); }
 
 }  // namespace gladstone::cuda

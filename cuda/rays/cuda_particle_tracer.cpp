@@ -192,14 +192,13 @@ class BatchPass {
       batch_.moved2().download(moved2.data(), moved2.size());
       std::vector<std::uint32_t> missed;
       for (std::uint32_t const at : aims) {
-        double const moved = std::sqrt(moved2[at]);
-        if (!host_.sharp.camera.chief_rays_only() && moved > found_[at].margin) missed.push_back(at);
+        auto const wider = host_.sharp.wider_margin(found_[at].margin, std::sqrt(moved2[at]));
+        if (!wider) continue;
+        found_[at].margin = *wider;
+        missed.push_back(at);
       }
       trace_wide(missed, step, -1);  // remove the light of the previous aims, which are still on the device
-      for (std::uint32_t const at : missed) {
-        found_[at].margin = host_.sharp.wider_margin(std::sqrt(moved2[at]));
-        place_aim(at, static_cast<std::size_t>(step[at / frame_count]));
-      }
+      for (std::uint32_t const at : missed) place_aim(at, static_cast<std::size_t>(step[at / frame_count]));
       if (!missed.empty()) batch_.aims().upload(aims_.data());
       aims = std::move(missed);
     }
@@ -209,24 +208,18 @@ class BatchPass {
   /// of RaysLadder
   int aim_at_host(std::size_t i, Vec2d& origin, int step) {
     PulseAim* const aims = &aims_[frame_count * i];
-    bool placed = aims[0].state == AimState::filled || aims[1].state == AimState::filled;
+    ParticleStart start{origin, step, aims[0].state == AimState::filled || aims[1].state == AimState::filled};
     for (std::size_t pulse = 0; pulse < frame_count; ++pulse) {
       if (aims[pulse].state != AimState::unknown) continue;
       throw_if_interrupted();
-      std::size_t const at = frame_count * i + pulse;
-      aims[pulse] = {};
-      RaysLaunch const& shared = host_.ladder[0];
-      found_[at] = aim_at_stop(shared, shared.camera.view(), medium_, pulses_[pulse].middle(launches_[0].first + i), 0);
-      if (!found_[at].disc) continue;
-      aims[pulse].state = AimState::wide;
-      step = std::max(step, on_device_.ladder().first_clipped);
-      if (!placed) origin = found_[at].origin;
-      placed = true;
+      found_[frame_count * i + pulse] =
+          aim_wide_pulse(host_.ladder, medium_, pulses_[pulse].middle(launches_[0].first + i), aims[pulse], start);
     }
+    origin = start.origin;
     for (std::size_t at = frame_count * i; at < frame_count * (i + 1); ++at) {
-      if (aims_[at].state == AimState::wide) place_aim(at, static_cast<std::size_t>(step));
+      if (aims_[at].state == AimState::wide) place_aim(at, static_cast<std::size_t>(start.step));
     }
-    return step;
+    return start.step;
   }
   /// Sets the aim point and extent of the rays of an aim set by the host, for the number of rays of a step of
   /// RaysLadder.

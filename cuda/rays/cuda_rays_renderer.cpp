@@ -301,18 +301,17 @@ class SceneTracer {
       SourceAim aim = sources.aims[at];
       RaySums sums[most_scramblings];
       batch.sum(at, sums);
-      bool const beyond = !launch.camera.chief_rays_only() && batch.moved(at) > aim.margin;
-      std::size_t const next =
-          beyond ? step : ladder_.next(step, RayPlacement::clipped, {}, sums, here.light_per_weight());
-      if (!beyond && next == step) {
+      auto const retry =
+          find_retry(ladder_, static_cast<int>(step), aim.margin, batch.moved(at), sums, here.light_per_weight());
+      if (!retry) {
         largest_margin_ = std::max(largest_margin_, aim.margin);
         truth_.set_hits(placed.source, source_truth(sums, here.scramblings(), placed.origin), here.light_per_weight());
         truth_.rays_planned[placed.source] = static_cast<std::int64_t>(launch.rays);
         continue;
       }
       missed.add(placed, aim);
-      if (beyond) aim.margin = launch.wider_margin(batch.moved(at));
-      waiting[next].add(on_device(next).place(placed.source, aim), aim);
+      aim.margin = retry->margin;
+      waiting[retry->step].add(on_device(retry->step).place(placed.source, aim), aim);
     }
     if (!missed.placed.empty()) Batch(here, mirrored_, std::move(missed), -1).finish(-1, statuses_);
   }

@@ -40,19 +40,14 @@ LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium co
     : host_(host),
       sharp_(host.sharp.camera.elements.data(), host.sharp.camera.elements.size(), "the camera"),
       smooth_(host.ladder.size()),
-      stop_(host.sharp.camera) {
+      stop_(host.sharp.camera),
+      ladder_{host.ladder.view(), light_per_photon} {
   RaysLaunch const& shared = host.ladder[0];
-  GLADSTONE_EXPECTS(host.ladder.size() <= LadderView::max_step_count);
   stop_.camera.elements = sharp_.data();
   ParticlesLaunch launch;
   launch.camera = stop_.camera;
   launch.tracing = shared.tracing;
   launch.chief_rays = shared.camera.chief_rays_only();
-  ladder_.goal = host.ladder.goal();
-  ladder_.light_per_photon = light_per_photon;
-  ladder_.steps = static_cast<int>(host.ladder.size());
-  ladder_.first_clipped = static_cast<int>(host.step_clipped());
-  ladder_.ruled = static_cast<bool>(shared.rule.view());
   bool const gaussian = shared.spot.model != SpotModel::none && shared.spot.model != SpotModel::airy;
   HitSplineView spline;
   if (images) {
@@ -76,8 +71,6 @@ LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium co
     launch.rule = here.rule.view();
     rules.insert(rules.end(), launch.rule.radius2, launch.rule.radius2 + launch.rule.rings);
     rules.insert(rules.end(), launch.rule.share, launch.rule.share + launch.rule.rings);
-    ladder_.rays[step] = here.rays;
-    ladder_.scrambling_bits[step] = here.choice.scrambling_bits;
     ladder_.sums_per_pulse =
         std::max(ladder_.sums_per_pulse, launch.shares() * static_cast<std::uint64_t>(launch.scramblings()));
     launch.spline = {};

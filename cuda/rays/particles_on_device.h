@@ -33,7 +33,7 @@ class LaunchesOnDevice {
                    double light_per_photon);
 
   StopView const& stop() const { return stop_; }
-  LadderView const& ladder() const { return ladder_; }
+  ParticleLadder const& ladder() const { return ladder_; }
   std::size_t steps() const { return launches_.size(); }
   /// Returns the launch of a step of RaysLadder for rays that fill the stop, without particles.
   ParticlesLaunch const& filled(std::size_t step) const { return launches_[step]; }
@@ -51,7 +51,7 @@ class LaunchesOnDevice {
                                                                     ///< stop, uploaded on first use
   DeviceArray<double> airy_, share_, rules_;
   StopView stop_;
-  LadderView ladder_;
+  ParticleLadder ladder_;
   std::vector<ParticlesLaunch> launches_;
 };
 

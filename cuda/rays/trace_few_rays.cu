@@ -60,19 +60,19 @@ __global__ void __launch_bounds__(threads, 4)
     double moved2 = 0;
     for (std::uint64_t from = 0; from < launch.rays; from += static_cast<std::uint64_t>(lanes)) {
       std::uint64_t const j = from + static_cast<std::uint64_t>(ray_of_lane);
-      ParticleRay ray;
+      ParticleRays<1> ray;
       if (mine && j < launch.rays) {
         ray = trace_particle_ray(launch, camera, medium, aim, pulse, particle, key, j);
-        ray.enter(origins[particle], sums);
-        moved2 = fmax(moved2, ray.moved2);
-        atomicAdd(counts + pulse * ray_status_count + static_cast<int>(ray.seen.status), 1u);
+        ray.enter(0, origins[particle], sums.hits[0], sums.hits[1]);
+        moved2 = fmax(moved2, ray.deflection2[0]);
+        atomicAdd(counts + pulse * ray_status_count + static_cast<int>(ray.seen[0].status), 1u);
       }
       if (launch.patch_px == 0) continue;
-      double const units = launch.sign * ray.seen.weight * launch.images.units_per_weight;
+      RayHit<double> const& seen = ray.seen[0];
+      double const units = launch.sign * seen.weight * launch.images.units_per_weight;
       bool const alone =
-          !spots.accumulate_light(launch.spot, square, ray.seen.pixel, units, lanes, pulse, launch.images) &&
-          units != 0;
-      add_psfs(launch, alone, ray.seen, pulse);
+          !spots.accumulate_light(launch.spot, square, seen.pixel, units, lanes, pulse, launch.images) && units != 0;
+      add_psfs(launch, alone, seen, pulse);
     }
     if (moved2 > 0 && state == AimState::wide) keep_largest(traced.moved2 + at, moved2);
     sum_lanes(sums, lanes, launch.scramblings());

@@ -41,17 +41,18 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
   // Whole warps take part in every iteration, because add_psfs() is collective.
   for (std::uint64_t of_block = share.first; of_block < share.last; of_block += threads) {
     std::uint64_t const j = of_block + threadIdx.x;
-    ParticleRay ray;
+    ParticleRays<1> ray;
+    RayHit<double> const& seen = ray.seen[0];
     // true: the window of spline nodes did not accept the ray, whose PSF is added directly to the image
     bool alone = false;
     if (j < share.last) {
       ray = trace_particle_ray(launch, camera, medium, aim, share.pulse, share.particle, share.key, j);
-      ray.enter(share.origin, sums);
-      moved2 = fmax(moved2, ray.moved2);
-      atomicAdd(counts + share.pulse * ray_status_count + static_cast<int>(ray.seen.status), 1u);
-      alone = lit && ray.seen.weight != 0 && !window.take(ray.seen.pixel, ray.seen.weight);
+      ray.enter(0, share.origin, sums.hits[0], sums.hits[1]);
+      moved2 = fmax(moved2, ray.deflection2[0]);
+      atomicAdd(counts + share.pulse * ray_status_count + static_cast<int>(seen.status), 1u);
+      alone = lit && seen.weight != 0 && !window.take(seen.pixel, seen.weight);
     }
-    if (lit) add_psfs(launch, alone, ray.seen, share.pulse);
+    if (lit) add_psfs(launch, alone, seen, share.pulse);
   }
 }
 
@@ -115,7 +116,7 @@ __global__ void __launch_bounds__(threads, 3)
 constexpr int seeing_threads = 64;
 
 __global__ void __launch_bounds__(seeing_threads)
-    see_particles_kernel(LadderView const __grid_constant__ ladder, PulseAim const* const aims,
+    see_particles_kernel(ParticleLadder const __grid_constant__ ladder, PulseAim const* const aims,
                          Vec2d const* const origins, RaySums const* const sums, std::uint64_t const count,
                          ParticleSteps const steps, DotTruth* const truth, DotTruth* const ambient) {
   std::uint64_t const i = std::uint64_t{blockIdx.x} * seeing_threads + threadIdx.x;
@@ -124,12 +125,10 @@ __global__ void __launch_bounds__(seeing_threads)
   int const step = steps.step[i] = steps.next[i];
   int const scramblings = 1 << ladder.scrambling_bits[step];
   std::uint64_t const shares = ParticlesLaunch::shares_of(ladder.rays[step]);
-  bool clipped = !ladder.ruled;
   for (int pulse = 0; pulse < frame_count; ++pulse) {
     std::uint64_t const at = frame_count * i + pulse;
     AimState const state = aims[at].state;
     if (state != AimState::filled && state != AimState::wide) continue;
-    clipped = clipped || state == AimState::wide;
     for (std::uint64_t share = 0; share < shares; ++share) {
       for (int k = 0; k < scramblings; ++k) {
         RaySums const& here = sums[at * ladder.sums_per_pulse + share * scramblings + k];
@@ -138,10 +137,7 @@ __global__ void __launch_bounds__(seeing_threads)
       }
     }
   }
-  PulseAim const &first = aims[frame_count * i], &second = aims[frame_count * i + 1];
-  EdgeRaySpread const rim{{first.spread2, second.spread2},
-                          {first.state == AimState::wide, second.state == AimState::wide}};
-  steps.next[i] = ladder.next(step, clipped ? RayPlacement::clipped : RayPlacement::by_rule, rim, through_medium);
+  steps.next[i] = next_particle_step(ladder, step, aims + frame_count * i, through_medium, ladder.light_per_photon);
   steps.chosen[i] = steps.next[i] > step ? 1 : 0;
   if (steps.chosen[i] != 0) atomicAdd(steps.count + LadderView::max_step_count, 1u);
   truth[i] = source_truth(through_medium, scramblings, origins[i]);
@@ -180,7 +176,7 @@ void trace_particles(ParticlesLaunch const& launch, DeviceMedium const& medium, 
       medium);
 }
 
-void see_particles(LadderView const& ladder, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
+void see_particles(ParticleLadder const& ladder, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
                    std::uint64_t count, ParticleSteps const& steps, DotTruth* truth, DotTruth* ambient) {
   auto const blocks = static_cast<unsigned int>((count + seeing_threads - 1) / seeing_threads);
   see_particles_kernel<<<blocks, seeing_threads>>>(ladder, aims, origins, sums, count, steps, truth, ambient);

@@ -6,10 +6,10 @@
 #include "cuda/device/device_images.h"
 #include "cuda/rays/device_medium.h"
 #include "render/light/lambert_sphere.h"
-#include "render/rays/filled_stop.h"
 #include "render/rays/hit_spline.h"
+#include "render/rays/particle_aim.h"
+#include "render/rays/particle_rays.h"
 #include "render/rays/particle_sources.h"
-#include "render/rays/ray_requirement.h"
 #include "render/rays/source_truth.h"
 #include "render/rays/stop_rule.h"
 #include "render/scene/spot.h"
@@ -31,57 +31,11 @@ struct AnyScattering {
   }
 };
 
-/// State of the search for the directions in which a particle's rays are sent at one laser pulse.
-enum class AimState : int {
-  none,     ///< no rays: the particle is not illuminated, or no ray passes the stop
-  filled,   ///< all rays fill the stop, and none is clipped there
-  unknown,  ///< not found on the device; the host determines the directions
-  wide,     ///< the rays cover a disc around the stop and are clipped there
-};
-
-/// Directions of the rays of one particle at one laser pulse, and the expected position of their light.
-struct PulseAim {
-  AimState state = AimState::none;
-  AimMap seen, ambient;  ///< map from the unit disc to the entrance pupil, with and without the medium
-  Vec2d low{}, high{};   ///< approximate bounding box of the ray hits on the sensor [px]
-  double spread2 = 0;    ///< variance of the hits, as FilledStop::spread2 [px^2]
-};
-
-/// Sequence of ray numbers from which the number of rays of each particle is chosen (RaysLadder), on the device.
-struct LadderView {
-  static constexpr int max_step_count = 16;  ///< maximum length of `rays`
-
-  RequiredRayAccuracy goal;
-  double light_per_photon = 0;  ///< light in the images per photon
-  int steps = 1;
-  int first_clipped = 0;  ///< first index in `rays` for particles whose rays are clipped at the stop
-  bool ruled = false;     ///< rays that fill the stop follow quadrature rules
-  std::uint64_t rays[max_step_count] = {};
-  int scrambling_bits[max_step_count] = {};
+/// Numbers of rays among which that of each particle is chosen, on the device.
+struct ParticleLadder : LadderView {
+  double light_per_photon = 0;       ///< light in the images per photon
   std::uint64_t sums_per_pulse = 1;  ///< number of RaySums of one particle and pulse: shares times scramblings, maximum
                                      ///< over all elements of `rays`
-
-  /// Returns the first step with at least the wanted number of rays, like RaysLadder::at_least().
-  GLADSTONE_HD int at_least(double wanted) const {
-    int step = 0;
-    while (step + 1 < steps && static_cast<double>(rays[step]) < wanted) ++step;
-    return step;
-  }
-  /// Returns the first step of a particle whose rays fill the stop, like ParticleLaunches::step_filled().
-  GLADSTONE_HD int step_filled(double light, double spread2) const {
-    return at_least(estimate_rays_for_spread(goal, ruled ? RayPlacement::by_rule : RayPlacement::clipped, light,
-                                             spread2, static_cast<double>(rays[0])));
-  }
-  /// Returns the step that a particle requires according to its rays at a step, like RaysLadder::next().
-  GLADSTONE_HD int next(int step, RayPlacement sent, EdgeRaySpread const& rim, RaySums const* of_scramblings) const {
-    if (step + 1 >= steps) return step;
-    auto const here = static_cast<double>(rays[step]);
-    double const asked = estimate_required_rays(goal, sent, rim, of_scramblings, 1 << scrambling_bits[step], here,
-                                                light_per_photon / here);
-    if (!(asked > here)) return step;
-    int const found = at_least(asked);
-    return found > step ? found : step + 1;
-  }
 };
 
 /// Particles of a batch, and data common to those with the same number of rays.
@@ -192,14 +146,14 @@ struct ParticleSteps {
 /// of RaysLadder of each particle.
 /// @param stop  stop with its elements in device memory
 /// @param launch  launch of any step
-void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,
+void aim_particles(StopView const& stop, ParticlesLaunch const& launch, ParticleLadder const& ladder,
                    DeviceMedium const& medium, std::uint64_t count, PulseAim* aims, Vec2d* origins,
                    ParticleSteps const& steps);
 
 /// Lists, by number of rays, the chosen particles (with their pulse) whose rays fill the stop.
 /// @param at  step of each particle
 /// @param listed  output: [step][frame_count * count], in arbitrary order, which does not affect the results
-void list_particles(LadderView const& ladder, PulseAim const* aims, int const* at, ParticleSteps const& steps,
+void list_particles(ParticleLadder const& ladder, PulseAim const* aims, int const* at, ParticleSteps const& steps,
                     std::uint64_t count, std::uint32_t* listed);
 
 /// Traces all rays of the listed particles: one block per share of a particle at one pulse, or one warp for several
@@ -218,7 +172,7 @@ void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium const& medium, A
 
 /// Computes the truth of the particles from the sums over their rays, and determines which of them need more rays.
 /// @param ambient  null: no medium
-void see_particles(LadderView const& ladder, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
+void see_particles(ParticleLadder const& ladder, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
                    std::uint64_t count, ParticleSteps const& steps, DotTruth* truth, DotTruth* ambient);
 
 }  // namespace gladstone::cuda::inline rays

@@ -9,9 +9,6 @@
 namespace gladstone::cuda::inline tomography {
 namespace {
 
-using tomography::SweepNorms;
-using tomography::SweepSums;
-
 /// Number of blocks in sums over all nodes; constant, because the order of summation depends on it.
 constexpr int sum_blocks = 512;
 
@@ -23,7 +20,7 @@ unsigned count_blocks(std::size_t items, int threads) {
 /// Lines and line integrals of one view in device memory.
 class LinesOnDevice {
  public:
-  LinesOnDevice(tomography::SartView const& view, tomography::VolumeShape const& shape)
+  LinesOnDevice(SartView const& view, VolumeShape const& shape)
       : lines_(view.projector.lines().data(), view.projector.lines().size(), "lines of sight"),
         samples_(lines_.size(), "samples of the lines of sight"),
         value_(view.value.data(), view.value.size(), "line integrals"),
@@ -37,16 +34,16 @@ class LinesOnDevice {
   DeviceView view() const { return {count(), lines_.data(), samples_.data(), value_.data(), row_sums_.data()}; }
 
  private:
-  DeviceArray<tomography::SightLine> lines_;
-  DeviceArray<tomography::LineSamples> samples_;
+  DeviceArray<SightLine> lines_;
+  DeviceArray<LineSamples> samples_;
   DeviceArray<double> value_, row_sums_;
 };
 
-class CudaVolume : public tomography::SartVolume {
+class CudaVolume : public SartVolume {
  public:
-  explicit CudaVolume(tomography::SartProblem const& problem)
-      : shape_(tomography::VolumeShape::of(problem.grid)),
-        stencil_(tomography::TotalVariationStencil::of(problem.grid)),
+  explicit CudaVolume(SartProblem const& problem)
+      : shape_(VolumeShape::of(problem.grid)),
+        stencil_(TotalVariationStencil::of(problem.grid)),
         relaxation_(problem.relaxation),
         size_(problem.grid.size()),
         volume_(size_, "the volume"),
@@ -63,7 +60,7 @@ class CudaVolume : public tomography::SartVolume {
     views_.zero();
     dual_.zero();
     std::size_t most_lines = 0;
-    for (tomography::SartView const& view : problem.views) {
+    for (SartView const& view : problem.views) {
       lines_.emplace_back(view, shape_);
       first_block_.push_back(line_blocks_);
       line_blocks_ += lines_.back().blocks();
@@ -77,7 +74,7 @@ class CudaVolume : public tomography::SartVolume {
 
   void correct(std::size_t index, bool count_views) override {
     LinesOnDevice const& lines = lines_[index];
-    project_lines<<<lines.blocks(), line_threads>>>(tomography::LineProjection{shape_, volume_.data()}, lines.view(),
+    project_lines<<<lines.blocks(), line_threads>>>(LineProjection{shape_, volume_.data()}, lines.view(),
                                                     quotients_.data(), line_sums_.data() + first_block_[index]);
     check_launch("project_lines");
     dim3 const tiles(count_blocks(static_cast<std::size_t>(shape_.nodes[0]), tile_x),
@@ -153,8 +150,8 @@ class CudaVolume : public tomography::SartVolume {
     }
   }
 
-  tomography::VolumeShape shape_;
-  tomography::TotalVariationStencil stencil_;
+  VolumeShape shape_;
+  TotalVariationStencil stencil_;
   double relaxation_;
   std::size_t size_;
   DeviceArray<double> volume_, before_, denoised_;  ///< volume now, volume after the last regularize(), work space
@@ -162,7 +159,7 @@ class CudaVolume : public tomography::SartVolume {
   DeviceArray<long long> views_;
   DeviceArray<Vec3d> dual_;
   DeviceArray<std::uint8_t> support_;
-  tomography::NodeConstraint constraint_;
+  NodeConstraint constraint_;
   std::vector<LinesOnDevice> lines_;
   std::vector<std::size_t> first_block_;  ///< first block of each view in line_sums_
   std::size_t line_blocks_ = 0;
@@ -174,7 +171,7 @@ class CudaVolume : public tomography::SartVolume {
 
 }  // namespace
 
-std::unique_ptr<tomography::SartVolume> make_cuda_volume(tomography::SartProblem const& problem) {
+std::unique_ptr<SartVolume> make_cuda_volume(SartProblem const& problem) {
   return std::make_unique<CudaVolume>(problem);
 }
 

@@ -48,26 +48,25 @@ struct NormSums {
 /// View in device memory.
 struct DeviceView {
   int count;
-  tomography::SightLine const* lines;
-  tomography::LineSamples const* samples;
+  SightLine const* lines;
+  LineSamples const* samples;
   double const* value;     ///< line integral of each line; NaN: the line is ignored
   double const* row_sums;  ///< row sum of the matrix for each line [m]
 };
 
-__global__ void sample_lines(tomography::VolumeShape shape, tomography::SightLine const* lines, int count,
-                             tomography::LineSamples* samples) {
+__global__ void sample_lines(VolumeShape shape, SightLine const* lines, int count, LineSamples* samples) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < count) samples[i] = tomography::LineSamples::of(shape, lines[i]);
+  if (i < count) samples[i] = LineSamples::of(shape, lines[i]);
 }
 
 /// Projects the volume along the lines of a view. @param quotients  output: LineResidual::quotient [lines]
 __global__ void __launch_bounds__(line_threads)
-    project_lines(tomography::LineProjection integrate, DeviceView view, double* quotients, LineSums* sums) {
+    project_lines(LineProjection integrate, DeviceView view, double* quotients, LineSums* sums) {
   __shared__ LineSums shared[line_threads];
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   LineSums own{0.0, 0.0};
   if (i < view.count) {
-    auto const line = tomography::LineResidual::of(view.value[i], integrate(view.lines[i]), view.row_sums[i]);
+    auto const line = LineResidual::of(view.value[i], integrate(view.lines[i]), view.row_sums[i]);
     quotients[i] = line.quotient;
     if (isfinite(view.value[i])) own = {line.difference * line.difference, view.value[i] * view.value[i]};
   }
@@ -77,8 +76,8 @@ __global__ void __launch_bounds__(line_threads)
 
 /// Corrects the nodes of a tile by one view: a thread gathers the contributions to its node in the order of the lines.
 __global__ void __launch_bounds__(node_threads)
-    correct_nodes(tomography::VolumeShape shape, DeviceView view, double const* quotients, double relaxation,
-                  bool count_views, double* volume, long long* views) {
+    correct_nodes(VolumeShape shape, DeviceView view, double const* quotients, double relaxation, bool count_views,
+                  double* volume, long long* views) {
   constexpr int warps = node_threads / 32;
   __shared__ int chosen[node_threads], counts[warps];
   int const thread = static_cast<int>(threadIdx.x), warp = thread / 32, lane = thread % 32;
@@ -87,13 +86,13 @@ __global__ void __launch_bounds__(node_threads)
                       static_cast<int>(blockIdx.z) * tile_z};
   int const node[3] = {low[0] + thread % tile_x, low[1] + thread / tile_x % tile_y,
                        low[2] + thread / (tile_x * tile_y)};
-  tomography::NodeSum sum;
+  NodeSum sum;
   for (int first = 0; first < view.count; first += node_threads) {
     // Choose the lines of this chunk that meet the tile, in their order
     int const candidate = first + thread;
     bool meets = candidate < view.count && isfinite(quotients[candidate]);
     if (meets) {
-      tomography::LineSamples const& samples = view.samples[candidate];
+      LineSamples const& samples = view.samples[candidate];
       int begin = 0, end = samples.count;
       for (int axis = 0; axis < 3; ++axis)
         limit_samples(samples, axis, low[axis] - 1.0, low[axis] + tile[axis], begin, end);
@@ -119,12 +118,12 @@ __global__ void __launch_bounds__(node_threads)
   if (node[0] >= shape.nodes[0] || node[1] >= shape.nodes[1] || node[2] >= shape.nodes[2]) return;
   if (!(sum.weight > 0.0)) return;
   long long const index = node[0] + shape.nodes[0] * (node[1] + static_cast<long long>(shape.nodes[1]) * node[2]);
-  volume[index] = tomography::correct_node(volume[index], sum, relaxation);
+  volume[index] = correct_node(volume[index], sum, relaxation);
   if (count_views) ++views[index];
 }
 
 __global__ void __launch_bounds__(node_threads) sum_changes(double const* volume, double const* before, long long count,
-                                                            tomography::NodeConstraint constraint, ChangeSums* sums) {
+                                                            NodeConstraint constraint, ChangeSums* sums) {
   __shared__ ChangeSums shared[node_threads];
   ChangeSums own{0.0, 0.0};
   for (long long i = blockIdx.x * blockDim.x + threadIdx.x; i < count; i += gridDim.x * blockDim.x) {
@@ -138,22 +137,22 @@ __global__ void __launch_bounds__(node_threads) sum_changes(double const* volume
 /// Position of a node in the volume.
 struct NodePlace {
   int i, j, k;
-  __device__ NodePlace(tomography::TotalVariationStencil const& stencil, long long node)
+  __device__ NodePlace(TotalVariationStencil const& stencil, long long node)
       : i(static_cast<int>(node % stencil.nodes[0])),
         j(static_cast<int>(node / stencil.nodes[0] % stencil.nodes[1])),
         k(static_cast<int>(node / stencil.nodes[0] / stencil.nodes[1])) {}
 };
 
-__global__ void denoise_nodes(tomography::TotalVariationStencil stencil, double const* volume, Vec3d const* dual,
-                              double lambda, long long count, double* denoised) {
+__global__ void denoise_nodes(TotalVariationStencil stencil, double const* volume, Vec3d const* dual, double lambda,
+                              long long count, double* denoised) {
   long long const node = static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x;
   if (node >= count) return;
   NodePlace const at(stencil, node);
   denoised[node] = stencil.denoise(volume, dual, lambda, at.i, at.j, at.k);
 }
 
-__global__ void project_dual(tomography::TotalVariationStencil stencil, double const* denoised, double lambda,
-                             long long count, Vec3d* dual) {
+__global__ void project_dual(TotalVariationStencil stencil, double const* denoised, double lambda, long long count,
+                             Vec3d* dual) {
   long long const node = static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x;
   if (node >= count) return;
   NodePlace const at(stencil, node);
@@ -162,8 +161,8 @@ __global__ void project_dual(tomography::TotalVariationStencil stencil, double c
 
 /// Applies bounds and support to `denoised`, and stores the result in `volume` and `before`.
 __global__ void __launch_bounds__(node_threads)
-    constrain_nodes(double const* denoised, tomography::NodeConstraint constraint, long long count, double* volume,
-                    double* before, NormSums* sums) {
+    constrain_nodes(double const* denoised, NodeConstraint constraint, long long count, double* volume, double* before,
+                    NormSums* sums) {
   __shared__ NormSums shared[node_threads];
   NormSums own{0.0, 0.0};
   for (long long i = blockIdx.x * blockDim.x + threadIdx.x; i < count; i += gridDim.x * blockDim.x) {

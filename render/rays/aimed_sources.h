@@ -89,6 +89,20 @@ GLADSTONE_HD AimedRay<T> aim_ray(Sources const& sources, AimedBundle<T> const& b
   return ray_to(sources, bundle, i, of_scrambling % 2 == 0 ? place : -place, point_on_circle(sqrt(u[0]), u[1]));
 }
 
+/// Adds a hit to a sum. @param origin  position to which the sum is relative [px]
+template <class T>
+GLADSTONE_HD void add_hit(RayHit<T> const& hit, Vec2<T> origin, CentroidSum<T>& sum) {
+  if (hit.weight != T(0)) sum.add(hit.pixel - origin, hit.weight, reaches_sensor_plane(hit.status));
+}
+
+/// Returns the squared deflection of a ray by the medium on the aim plane [m^2]; 0 if unknown.
+template <class T>
+GLADSTONE_HD T squared_deflection(RayHit<T> const& ambient, RayHit<T> const& seen) {
+  if (ambient.status > RayStatus::vignetted || seen.status > RayStatus::vignetted) return T(0);
+  Vec2<T> const shift = seen.at_lens - ambient.at_lens;
+  return dot(shift, shift);
+}
+
 /// Adds the results of one ray in both images to status counts, centroid sums and light.
 /// @param origin  position to which the sums are relative [px]
 /// @param hits  sums of the ray's scrambling, for both images
@@ -102,12 +116,10 @@ GLADSTONE_HD T enter_ray(RayHit<T> const& reference, RayHit<T> const& flow, Vec2
     RayHit<T> const& here = frame == 0 ? reference : flow;
     count(frame, here.status);
     if (here.weight == T(0)) continue;
-    hits[frame].add(here.pixel - origin, here.weight, reaches_sensor_plane(here.status));
+    add_hit(here, origin, hits[frame]);
     deposit(frame, here);
   }
-  if (reference.status > RayStatus::vignetted || flow.status > RayStatus::vignetted) return T(0);
-  Vec2<T> const shift = flow.at_lens - reference.at_lens;
-  return dot(shift, shift);
+  return squared_deflection(reference, flow);
 }
 
 }  // namespace gladstone::inline rays

@@ -10,8 +10,10 @@
 // Device code does not unroll loops over rays, since each loop body contains a whole camera and a medium.
 #if defined(__CUDA_ARCH__)
 #define GLADSTONE_RAY_BY_RAY _Pragma("unroll 1")
+#define GLADSTONE_SHARED_BY_KERNELS __noinline__
 #else
 #define GLADSTONE_RAY_BY_RAY
+#define GLADSTONE_SHARED_BY_KERNELS
 #endif
 
 namespace gladstone::inline rays {

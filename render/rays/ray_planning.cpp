@@ -182,7 +182,7 @@ std::uint64_t largest_ray_number(Scene const& scene, RenderPlan const& plan) {
   if (scene.setup.experiment().sources.on_target) return plan.rays;
   std::optional<AiryTable> airy;
   return static_cast<std::uint64_t>(
-      ParticleLaunches(scene, plan, make_spot(scene, airy), RenderImages::yes).ladder.goal().most);
+      ParticleLaunches(scene, plan, make_spot(scene, airy), RenderImages::yes).ladder.view().goal.most);
 }
 
 }  // namespace gladstone::inline rays

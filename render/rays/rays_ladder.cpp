@@ -1,7 +1,9 @@
 #include "render/rays/rays_ladder.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "render/base/contracts.h"
 #include "render/scene/spot.h"
 
 namespace gladstone::inline rays {
@@ -27,9 +29,19 @@ double smooth_spot2(Scene const& scene) {
 }  // namespace
 
 RaysLadder::RaysLadder(Scene const& scene, RenderPlan const& plan, RenderImages images) {
-  if (plan.adaptive_criteria && images != RenderImages::no) goal_.level = plan.adaptive_criteria->level;
-  if (plan.adaptive_criteria) goal_.brightest_at = plan.adaptive_criteria->brightest_at;
-  goal_.spot2 = smooth_spot2(scene);
+  if (plan.adaptive_criteria && images != RenderImages::no) view_.goal.level = plan.adaptive_criteria->level;
+  if (plan.adaptive_criteria) view_.goal.brightest_at = plan.adaptive_criteria->brightest_at;
+  view_.goal.spot2 = smooth_spot2(scene);
+}
+
+void RaysLadder::add(RaysLaunch launch) {
+  GLADSTONE_EXPECTS(view_.steps < LadderView::max_step_count);
+  view_.rays[view_.steps] = launch.rays;
+  view_.scrambling_bits[view_.steps] = launch.choice.scrambling_bits;
+  view_.ruled = static_cast<bool>(launch.rule.view());
+  view_.goal.most = static_cast<double>(launch.rays);
+  ++view_.steps;
+  launches_.push_back(std::move(launch));
 }
 
 RaysLadder RaysLadder::of_points(Scene const& scene, RenderPlan const& plan, RaysLaunch const& shared,
@@ -37,10 +49,9 @@ RaysLadder RaysLadder::of_points(Scene const& scene, RenderPlan const& plan, Ray
   constexpr std::uint64_t least = 32;
   RaysLadder ladder(scene, plan, images);
   for (std::uint64_t rays = least; plan.adaptive_criteria && rays < plan.rays; rays *= 2) {
-    ladder.launches_.push_back(shared.with_rays(rays));
+    ladder.add(shared.with_rays(rays));
   }
-  ladder.launches_.push_back(shared.with_rays(plan.rays));
-  ladder.goal_.most = static_cast<double>(plan.rays);
+  ladder.add(shared.with_rays(plan.rays));
   return ladder;
 }
 
@@ -54,28 +65,12 @@ RaysLadder RaysLadder::of_rules(Scene const& scene, RenderPlan const& plan, Rays
   if (!ruled || plan.rays < least) return of_points(scene, plan, shared, images);
   RaysLadder ladder(scene, plan, images);
   for (std::uint64_t rays = least; rays <= plan.rays; rays *= 4) {
-    RaysLaunch& launch = ladder.launches_.emplace_back(shared.with_rays(rays));
+    RaysLaunch launch = shared.with_rays(rays);
     launch.rule = StopRule(rays);
     launch.choice.scrambling_bits = rays < 64 ? 1 : 2;
+    ladder.add(std::move(launch));
   }
-  ladder.goal_.most = static_cast<double>(ladder.launches_.back().rays);
   return ladder;
-}
-
-std::size_t RaysLadder::at_least(double rays) const {
-  std::size_t step = 0;
-  while (step + 1 < launches_.size() && static_cast<double>(launches_[step].rays) < rays) ++step;
-  return step;
-}
-
-std::size_t RaysLadder::next(std::size_t step, RayPlacement sent, EdgeRaySpread const& rim,
-                             RaySums const* of_scramblings, double light_per_weight) const {
-  if (step + 1 == launches_.size()) return step;
-  RaysLaunch const& launch = launches_[step];
-  double const rays = static_cast<double>(launch.rays);
-  double const asked = estimate_required_rays(goal_, sent, rim, of_scramblings, 1 << launch.choice.scrambling_bits,
-                                              rays, light_per_weight);
-  return asked > rays ? std::max(step + 1, at_least(asked)) : step;
 }
 
 }  // namespace gladstone::inline rays

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "render/rays/ray_requirement.h"
+#include "render/rays/ladder_view.h"
 #include "render/rays/rays_launch.h"
 #include "render/scene/renderer.h"
 
@@ -24,23 +24,14 @@ class RaysLadder {
 
   std::size_t size() const { return launches_.size(); }
   RaysLaunch const& operator[](std::size_t step) const { return launches_[step]; }
-  RequiredRayAccuracy const& goal() const { return goal_; }
-  /// Returns the first step with at least this number of rays; otherwise the last step.
-  std::size_t at_least(double rays) const;
-  /// Returns the step that a source requires according to its rays at the given step; the same step if they suffice.
-  /// @param light_per_weight  light in the image per unit of ray weight at this step
-  std::size_t next(std::size_t step, RayPlacement sent, EdgeRaySpread const& rim, RaySums const* of_scramblings,
-                   double light_per_weight) const;
-
-  template <class Change>
-  void change(Change&& change) {
-    for (RaysLaunch& launch : launches_) change(launch);
-  }
+  LadderView const& view() const { return view_; }
 
  private:
   RaysLadder(Scene const& scene, RenderPlan const& plan, RenderImages images);
+  void add(RaysLaunch launch);
+
   std::vector<RaysLaunch> launches_;
-  RequiredRayAccuracy goal_;
+  LadderView view_;
 };
 
 }  // namespace gladstone::inline rays

@@ -124,10 +124,11 @@ double RaysLaunch::first_margin(WorldApparentPupil const& disc, double shift) co
   return shift > 0 ? 2 * shift + 0.01 * smaller_semi_axis(disc) : 0;
 }
 
-double RaysLaunch::wider_margin(double shift) const {
-  double const margin = 1.02 * shift;
-  check_deflection_limit(margin, z_b);
-  return margin;
+std::optional<double> RaysLaunch::wider_margin(double margin, double shift) const {
+  if (camera.chief_rays_only() || !(shift > margin)) return std::nullopt;
+  double const wider = 1.02 * shift;
+  check_deflection_limit(wider, z_b);
+  return wider;
 }
 
 }  // namespace gladstone::inline rays

@@ -72,9 +72,10 @@ struct RaysLaunch {
   /// small is traced again, which costs more than the 2 % of rays added by 1 % of the radius.
   /// @param shift  largest deflection of these rays on the aim plane [m]
   double first_margin(WorldApparentPupil const& disc, double shift) const;
-  /// Returns the margin for a source of which a ray was deflected by `shift` on the aim plane [m].
+  /// Returns the margin with which a source must be traced again [m]; nullopt if its margin suffices.
+  /// @param shift  largest deflection of its rays on the aim plane [m]
   /// @throws DataError if no real set-up has such a deflection
-  double wider_margin(double shift) const;
+  std::optional<double> wider_margin(double margin, double shift) const;
 
  private:
   /// Sets the number of rays and its division among scramblings.

@@ -82,6 +82,24 @@ SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& 
   return aim;
 }
 
+/// Parameters with which a source must be traced again.
+struct SourceRetry {
+  int step;       ///< step of the ladder
+  double margin;  ///< as SourceAim::margin [m]
+};
+
+/// Decides whether a source must be traced again, after all its rays have been traced: with a larger margin if a ray
+/// was deflected beyond it, or with more rays.
+/// @param shift  largest deflection of a ray on the aim plane [m]
+/// @param light_per_weight  light in the image per unit of ray weight at this step
+inline std::optional<SourceRetry> find_retry(RaysLadder const& ladder, int step, double margin, double shift,
+                                             RaySums const* of_scramblings, double light_per_weight) {
+  if (auto const wider = ladder[step].wider_margin(margin, shift)) return SourceRetry{step, *wider};
+  int const next = ladder.view().next(step, RayPlacement::clipped, {}, of_scramblings, light_per_weight);
+  if (next == step) return std::nullopt;
+  return SourceRetry{next, margin};
+}
+
 /// Traces the rays of sources, one source at a time and with the same rays in both images: computes light and truth.
 /// @tparam View  CameraView, or another view that determines where rays land
 template <class View, class Sources, class Medium>
@@ -106,15 +124,13 @@ class SourceTracer {
     while (true) {
       StatusCounts const before = statuses_;
       double const shift = trace_all(source, aim, images, 1);
-      bool const beyond = !launch_->camera.chief_rays_only() && shift > aim.margin;
-      std::size_t const next = beyond ? step_
-                                      : ladder_.next(step_, RayPlacement::clipped, {}, of_scramblings_,
-                                                     launch_->light_per_weight(sources_.area()));
-      if (!beyond && next == step_) break;
+      auto const retry =
+          find_retry(ladder_, step_, aim.margin, shift, of_scramblings_, launch_->light_per_weight(sources_.area()));
+      if (!retry) break;
       if (with_images_) trace_all(source, aim, images, -1);
       statuses_ = before;
-      if (beyond) aim.margin = launch_->wider_margin(shift);
-      use(next);
+      aim.margin = retry->margin;
+      use(retry->step);
     }
     largest_margin_ = std::max(largest_margin_, aim.margin);
     return source_truth(of_scramblings_, 1 << launch_->choice.scrambling_bits, aim.origin);
@@ -127,7 +143,7 @@ class SourceTracer {
   double largest_margin() const { return largest_margin_; }
 
  private:
-  void use(std::size_t step) {
+  void use(int step) {
     step_ = step;
     launch_ = &ladder_[step];
     view_.elements = launch_->camera.elements.data();
@@ -183,7 +199,7 @@ class SourceTracer {
   }
 
   RaysLadder const& ladder_;
-  std::size_t step_ = 0;
+  int step_ = 0;
   RaysLaunch const* launch_ = nullptr;  ///< launch of the current step
   Sources sources_;
   Medium const& medium_;
