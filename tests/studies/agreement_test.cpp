@@ -60,7 +60,7 @@ class AgreementOfTurbulence : public testing::TestWithParam<PlaneCase> {};
 // measurement image than in the reference image, a few hundredths of the rms of the rays (cone against rays, below).
 TEST_P(AgreementOfTurbulence, IsWhatTheSpectrumPredicts) {
   auto const [file, nodes] = GetParam();
-  gladstone::Setup const setup = table1(file, 64);
+  gladstone::Setup const setup = table1(file, 16);
   double const spacing = 32.7 * unit::millimetre / (nodes - 1);
   FocusedDotsRenderer renderer;
   PlaneAgreement const traced = agreement_over_plane(setup, nodes, spacing, renderer);

@@ -60,7 +60,7 @@ StageCosts costs_of(StudyWithoutWork const& study, std::size_t cases,
 // study only. A table holds 98 measures of 8 bytes per case, 784 bytes, and at most 300 bytes for the rest of row and
 // point (study_table.h); with the formatted result in place of numbers it would be over 3000.
 TEST_F(LargeStudies, TakeTheSameTimeAndMemoryPerCaseAsSmallOnes) {
-  constexpr std::size_t few = 2000, many = 20000;
+  constexpr std::size_t few = 1000, many = 10000;
   StageCosts small = costs_of(study_of("few", few), few, run_and_kill);
   StageCosts large = costs_of(study_of("many", many), many, run_and_kill);
   constexpr double buffer = 4 << 20;
@@ -83,7 +83,7 @@ TEST_F(LargeStudies, TakeTheSameTimeAndMemoryPerCaseAsSmallOnes) {
 // the claim. Two others continue at the same time. Every file of a result, and the tables, equal those of a run that
 // was not disturbed.
 TEST_F(LargeStudies, HaveTheSameResultsAfterInterruptions) {
-  constexpr std::size_t cases = 2000;
+  constexpr std::size_t cases = 1000;
   StudyWithoutWork const whole = study_of("whole", cases), parts = study_of("parts", cases);
   auto const finish = [](StudyWithoutWork const& study) {
     ASSERT_EQ(run_in_process([&] { study.run(); }).status, 0);
@@ -93,16 +93,16 @@ TEST_F(LargeStudies, HaveTheSameResultsAfterInterruptions) {
   finish(whole);
 
   parts.plan();
-  run_and_kill(parts, 700);
+  run_and_kill(parts, 350);
   WorkCost const killed = run_in_process([&] {
     parts.run(0.5, {}, [](std::size_t index) {
-      if (index == 1300) ::raise(SIGKILL);
+      if (index == 650) ::raise(SIGKILL);
     });
   });
   EXPECT_TRUE(WIFSIGNALED(killed.status)) << killed.status;
-  EXPECT_TRUE(has_result(parts.run_folder(), 1300));
-  EXPECT_FALSE(has_result(parts.run_folder(), 700));
-  EXPECT_FALSE(has_result(parts.run_folder(), 1301));
+  EXPECT_TRUE(has_result(parts.run_folder(), 650));
+  EXPECT_FALSE(has_result(parts.run_folder(), 350));
+  EXPECT_FALSE(has_result(parts.run_folder(), 651));
   pid_t const other = ::fork();
   if (other == 0) ::_exit(run_in_process([&] { parts.run(0.5); }).status == 0 ? 0 : 1);
   finish(parts);
