@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "studies/drawing/figure.h"
 #include "studies/figures/study_cells.h"
@@ -16,9 +17,23 @@ std::optional<Figure> make_budget(StudyCells const& cells, std::size_t axis, Stu
 /// Returns a figure of the errors that are common to all repeats, and of the scatter between repeats.
 /// @param points  averages of a study with repeats
 std::optional<Figure> make_repeats(StudyCells const& points, std::size_t axis);
+/// Returns a figure of the fraction of the errors that the estimated uncertainty covers.
+std::optional<Figure> make_coverage(StudyCells const& cells, std::size_t axis);
+/// Returns a figure of one measure against another, with one point per case.
+std::optional<Figure> make_case_points(StudyCells const& cells, std::string const& x_measure,
+                                       std::string const& y_measure);
 
 /// Common parts of the figures of a study.
 namespace study_drawing {
+
+/// rms error of the measurement against one reference.
+struct ErrorMeasure {
+  std::string measure;
+  std::string name;
+};
+/// Returns the errors that are known in some case. The first two are those against ray truth and against Eq. 9, or for
+/// PIV against the flow.
+std::vector<ErrorMeasure> known_errors(StudyCells const& cells);
 
 /// Adds the title and a caption of at most two lines.
 void add_texts(Figure& figure, std::string const& title, std::string const& caption);

@@ -100,6 +100,19 @@ Axis make_y_axis(std::string const& title, double low, double high) {
   return {title, 0, high > 0 ? 1.12 * high : 1.0};
 }
 
+std::vector<ErrorMeasure> known_errors(StudyCells const& cells) {
+  std::vector<ErrorMeasure> errors{{"ray_truth.rms_px", "measured − ray truth"},
+                                   {"eq9.rms_px", "measured − Eq. 9"},
+                                   {"flow.rms_px", "measured − flow"},
+                                   {"eq9_cone.rms_px", "measured − aperture-averaged Eq. 9"},
+                                   {"window_truth.rms_px", "measured − ray truth on the window"}};
+  std::erase_if(errors, [&](ErrorMeasure const& error) {
+    std::vector<double> const values = cells.values(error.measure, cells.rows_at({}));
+    return std::none_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  });
+  return errors;
+}
+
 std::string study_name(StudyCells const& cells) {
   return fmt::format("study {}, {} cases", cells.table().name, cells.finished());
 }
@@ -121,41 +134,40 @@ std::string file_part(std::string key) {
   return key;
 }
 
-/// Cases of a study and, for repeats, the averages of its points.
-struct CasesAndPoints {
-  explicit CasesAndPoints(StudyTable const& table)
-      : cells(table),
-        point_table(table.repeats() > 1 ? std::optional(study_points(table)) : std::nullopt),
-        points(point_table ? std::optional<StudyCells>(*point_table) : std::nullopt) {}
-  CasesAndPoints(CasesAndPoints const&) = delete;
-
-  std::optional<Figure> make_budget(std::size_t axis) const {
-    return gladstone::make_budget(cells, axis, points ? &*points : nullptr);
-  }
-
-  StudyCells cells;
-  std::optional<StudyTable> point_table;
-  std::optional<StudyCells> points;
-};
-
 }  // namespace
 
-std::vector<NamedFigure> make_budget_figures(StudyTable const& table) {
-  CasesAndPoints const study(table);
-  std::vector<std::size_t> axes = study.cells.varied();
-  if (axes.empty() && !table.axes.empty()) axes = {0};
-  std::vector<NamedFigure> figures;
-  for (std::size_t const axis : axes) {
-    if (std::optional<Figure> figure = study.make_budget(axis))
-      figures.push_back({study.cells.axis(axis).title, *std::move(figure)});
-  }
-  return figures;
+StudyFigureMaker::StudyFigureMaker(StudyTable const& table)
+    : cells_(table),
+      map_cells_(table, sampled_places_in_maps(table.points.size())),
+      point_table_(table.repeats() > 1 ? std::optional(study_points(table)) : std::nullopt),
+      points_(point_table_ ? std::optional<StudyCells>(*point_table_) : std::nullopt) {}
+
+std::optional<Figure> StudyFigureMaker::make_errors(std::size_t axis) const { return make_error_curves(cells_, axis); }
+
+std::optional<Figure> StudyFigureMaker::make_budget(std::size_t axis) const {
+  return figures::make_budget(cells_, axis, points_ ? &*points_ : nullptr);
+}
+
+std::optional<Figure> StudyFigureMaker::make_repeats(std::size_t axis) const {
+  return points_ ? figures::make_repeats(*points_, axis) : std::nullopt;
+}
+
+std::optional<Figure> StudyFigureMaker::make_coverage(std::size_t axis) const {
+  return figures::make_coverage(cells_, axis);
+}
+
+std::optional<Figure> StudyFigureMaker::make_map(std::size_t x_axis, std::size_t y_axis) const {
+  return make_error_map(map_cells_, x_axis, y_axis);
+}
+
+std::optional<Figure> StudyFigureMaker::make_case_points(std::string const& x_measure,
+                                                         std::string const& y_measure) const {
+  return figures::make_case_points(cells_, x_measure, y_measure);
 }
 
 std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table,
                                     std::vector<std::string> const& formats) {
-  CasesAndPoints const study(table);
-  StudyCells const &cells = study.cells, map_cells(table, sampled_places_in_maps(table.points.size()));
+  StudyFigureMaker const study(table);
   std::vector<Figure> figures;
   std::vector<std::string> paths;  // one per figure and format
   auto const add = [&](std::optional<Figure> figure, std::string const& name) {
@@ -163,15 +175,15 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
     figures.push_back(*std::move(figure));
     for (std::string const& format : formats) paths.push_back(fmt::format("{}/{}.{}", folder, name, format));
   };
-  std::vector<std::size_t> const& varied = cells.varied();
+  std::vector<std::size_t> const& varied = study.varied();
   for (std::size_t i = 0; i < varied.size(); ++i) {
-    std::string const name = file_part(cells.key(varied[i]));
-    add(make_error_curves(cells, varied[i]), "error_against_" + name);
+    std::string const name = file_part(table.axes[varied[i]].key);
+    add(study.make_errors(varied[i]), "error_against_" + name);
     add(study.make_budget(varied[i]), "budget_" + name);
-    if (study.points) add(make_repeats(*study.points, varied[i]), "repeats_" + name);
+    add(study.make_repeats(varied[i]), "repeats_" + name);
     for (std::size_t j = i + 1; j < varied.size(); ++j) {
-      add(make_error_map(map_cells, varied[j], varied[i]),
-          fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));
+      add(study.make_map(varied[j], varied[i]),
+          fmt::format("error_map_{}_{}", name, file_part(table.axes[varied[j]].key)));
     }
   }
   // gnuplot dominates the run time: run one process per file, in parallel

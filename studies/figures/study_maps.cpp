@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "studies/drawing/figure_texts.h"
 #include "studies/figures/study_drawings.h"
@@ -16,8 +17,7 @@ using namespace study_drawing;
 
 /// Errors over two axes, as rows and columns of equal cells.
 struct ErrorMap {
-  char const* measure;
-  char const* heading;
+  ErrorMeasure error;
   Image<double> errors = {};
 };
 
@@ -34,7 +34,10 @@ class ErrorMapFigure {
  public:
   ErrorMapFigure(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis)
       : cells_(cells), x_axis_(x_axis), y_axis_(y_axis), x_(cells.axis(x_axis)), y_(cells.axis(y_axis)) {
-    for (ErrorMap& map : maps_) most_filled_ = std::max(most_filled_, fill(map));
+    for (ErrorMeasure& error : known_errors(cells)) {
+      if (maps_.size() == 2) break;
+      most_filled_ = std::max(most_filled_, fill(maps_.emplace_back(std::move(error))));
+    }
     logarithmic_ = high_ > 10 * low_;
   }
 
@@ -47,9 +50,10 @@ class ErrorMapFigure {
     double longest = 0;
     for (std::string const& label : y_.label)
       longest = std::max(longest, text_width(label, font_of(Figure::Kind::chart, "tick")));
-    double const left = 62.0 + longest, between = 40.0;
+    double const left = 62.0 + longest, between = 40.0, count = static_cast<double>(maps_.size());
     int const below = room_below(x_, width) + 44;
-    Figure figure{static_cast<int>(left + 2 * width + between + 126), static_cast<int>(86 + height) + below};
+    Figure figure{static_cast<int>(left + count * width + (count - 1) * between + 126),
+                  static_cast<int>(86 + height) + below};
     add_texts(figure, fmt::format("Error over {} and {}", x_.title, y_.title),
               fmt::format("{}\n{}", study_name(cells_),
                           !only_repeats_differ_ ? "median of all cases of a cell"
@@ -57,13 +61,13 @@ class ErrorMapFigure {
                                          : std::string("single cases; rms per component")));
     for (std::size_t m = 0; m < maps_.size(); ++m) {
       double const from = left + static_cast<double>(m) * (width + between);
-      Panel panel{.box = {from, from + width, 74, 86 + height - 12}, .title = maps_[m].heading};
+      Panel panel{.box = {from, from + width, 74, 86 + height - 12}, .title = maps_[m].error.name + " [px]"};
       panel.x = make_cell_axis(x_);
       panel.x.slanted = room_below(x_, width) > 56;
       panel.y = make_cell_axis(y_);
       if (m > 0) panel.y = {.low = panel.y.low, .high = panel.y.high, .marks = Axis::Marks::none};
       panel.map = Map{maps_[m].errors, 0, 1, 0, 1, Palette::sequential, logarithmic_ ? low_ : 0.0, high_, logarithmic_};
-      panel.map->has_bar = m > 0;
+      panel.map->has_bar = m + 1 == maps_.size();
       if (logarithmic_) panel.map->ticks = logarithmic_ticks(low_, high_);
       if (x_.size() <= 12 && y_.size() <= 12) add_numbers(panel);
       figure.panels.push_back(std::move(panel));
@@ -80,7 +84,7 @@ class ErrorMapFigure {
       for (std::size_t i = 0; i < x_.size(); ++i) {
         std::vector<std::size_t> const rows = cells_.rows_at({{x_axis_, i}, {y_axis_, j}});
         bool const alone = cells_.only_repeats_differ(rows);
-        double const error = compute_scatter(cells_.values(map.measure, rows), alone).centre;
+        double const error = compute_scatter(cells_.values(map.error.measure, rows), alone).centre;
         only_repeats_differ_ = only_repeats_differ_ && alone;
         repeats_ = std::max(repeats_, rows.size());
         map.errors(static_cast<int>(i), static_cast<int>(j)) = error;
@@ -111,8 +115,7 @@ class ErrorMapFigure {
   std::size_t x_axis_, y_axis_;
   FigureAxis const& x_;
   FigureAxis const& y_;
-  std::vector<ErrorMap> maps_{{"ray_truth.rms_px", "measured − ray truth [px]"},
-                              {"eq9.rms_px", "measured − Eq. 9 [px]"}};
+  std::vector<ErrorMap> maps_;
   bool only_repeats_differ_ = true, logarithmic_ = false;
   std::size_t repeats_ = 0, most_filled_ = 0;  ///< largest number of cases of a cell, and of cells with an error
   double low_ = std::numeric_limits<double>::infinity(), high_ = 0;  ///< range of the errors [px]

@@ -11,6 +11,11 @@
 #include "studies/sweep/study_columns.h"
 
 namespace gladstone::inline report {
+namespace {
+
+constexpr std::size_t most_positions = 24;  ///< maximum number of positions on an axis; more values are binned
+
+}  // namespace
 
 StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
   for (StudyRow const& row : table.rows) {
@@ -118,8 +123,7 @@ std::string strongest_axis(StudyView const& study) {
   std::string text;
   for (std::size_t k = 0; k < study.table.axes.size(); ++k) {
     StudyAxis const& axis = study.table.axes[k];
-    FigureAxis const places =
-        figure_axis(axis, std::min<std::size_t>(max_positions, std::max<std::size_t>(2, axis.labels.size())));
+    FigureAxis const places = figure_axis(axis, most_positions);
     double least = std::numeric_limits<double>::infinity(), most = 0;
     std::string least_at, most_at;
     for (std::size_t i = 0; i < places.size(); ++i) {

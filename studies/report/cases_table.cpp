@@ -1,58 +1,16 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "studies/case/json_text.h"
 #include "studies/figures/study_axes.h"
 #include "studies/report/study_view.h"
-#include "studies/sweep/study_columns.h"
 
 namespace gladstone::inline report {
-
 namespace {
 
 constexpr std::size_t longest_plain_table = 20;  ///< maximum number of rows of a table without a search field
 
 }  // namespace
-
-nlohmann::json study_data(StudyView const& study) {
-  nlohmann::json data{{"main", study.main}};
-  if (study.knows("signal_px")) data["second"] = "signal_px";
-  data["axes"] = data["measures"] = data["rows"] = nlohmann::json::array();
-  std::vector<FigureAxis> axes;
-  for (StudyAxis const& axis : study.table.axes) {
-    axes.push_back(figure_axis(axis, std::max<std::size_t>(2, std::min(max_positions, axis.labels.size()))));
-    nlohmann::json numbers = nlohmann::json::array();
-    for (double const position : axes.back().position) numbers.push_back(number_or_null(position));
-    data["axes"].push_back({{"key", axis.key},
-                            {"title", axes.back().title},
-                            {"numeric", axes.back().numeric},
-                            {"logarithmic", axes.back().logarithmic},
-                            {"labels", axes.back().label},
-                            {"numbers", numbers}});
-  }
-  for (StudyColumn const& column : table_columns(study.table)) {
-    if (study.table.find_measure(column.name) && study.knows(column.name)) {
-      data["measures"].push_back({{"name", column.name}, {"unit", unit_of_column(column.name)}});
-    }
-  }
-  for (StudyRow const& row : study.table.rows) {
-    nlohmann::json one{{"case", row.index},
-                       {"status", to_string(row.status)},
-                       {"v", nlohmann::json::array()},
-                       {"m", nlohmann::json::array()}};
-    for (std::size_t k = 0; k < axes.size(); ++k) one["v"].push_back(axes[k].place_of[row.value[k]]);
-    for (auto const& measure : data["measures"]) {
-      one["m"].push_back(row.status == CaseStatus::ok
-                             ? number_or_null(study.of(row, measure["name"].get_ref<std::string const&>()))
-                             : nlohmann::json(nullptr));
-    }
-    data["rows"].push_back(std::move(one));
-  }
-  return data;
-}
 
 TextTable cases_table(StudyView const& study) {
   TextTable table{
