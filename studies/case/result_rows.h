@@ -19,8 +19,8 @@ char const* margin_word(Margin margin);
 
 /// One quantity that a command prints, writes as JSON and as CSV.
 struct ResultRow {
-  std::string id = {};      ///< number of its formula in docs/design.md, F1 to F27; empty: none
-  std::string key;          ///< for programs, with the unit as suffix; "a.b": member b of the object a
+  std::string id = {};  ///< number of its formula in docs/design.md, F1 to F27; empty: none
+  std::string key;      ///< for programs, with the unit as suffix; "a.b": member b of the object a, "a.0": of an array
   std::string symbol = {};  ///< in formulas; empty: none
   std::string label;
   double value;           ///< in `unit`; NaN: unknown, or not applicable
@@ -29,6 +29,7 @@ struct ResultRow {
   std::string source = {};  ///< publication or file of the formula
   Margin margin = Margin::none;
   std::string note = {};  ///< criterion of the margin, or a remark
+  bool whole = false;     ///< true: a count, an integer in JSON
 };
 
 /// Returns a value with its unit, "infinite" or "unknown".
