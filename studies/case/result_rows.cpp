@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -54,7 +55,12 @@ nlohmann::ordered_json rows_json(std::vector<ResultRow> const& rows) {
   for (ResultRow const& row : rows) {
     std::string path = '/' + row.key;
     std::replace(path.begin(), path.end(), '.', '/');
-    json[nlohmann::ordered_json::json_pointer(path)] = number_or_null(row.value);
+    nlohmann::ordered_json& value = json[nlohmann::ordered_json::json_pointer(path)];
+    if (row.whole) {
+      value = static_cast<std::int64_t>(row.value);
+    } else {
+      value = number_or_null(row.value);
+    }
   }
   return json;
 }

@@ -21,7 +21,7 @@ char const* margin_word(Margin margin);
 struct ResultRow {
   std::string id = {};      ///< number of its formula in docs/design.md, F1 to F27; empty: none
   std::string key;          ///< name of the quantity for programs, with the unit as suffix; "a.b": member b of the
-                            ///< object a
+                            ///< object a, "a.0": its first element if a is an array
   std::string symbol = {};  ///< symbol of the quantity in formulas; empty: none
   std::string label;
   double value;           ///< in `unit`; NaN: unknown, or not applicable
@@ -30,6 +30,7 @@ struct ResultRow {
   std::string source = {};  ///< publication or file of the formula
   Margin margin = Margin::none;
   std::string note = {};  ///< criterion of the margin, or a remark
+  bool whole = false;     ///< true: a count, an integer in JSON
 };
 
 /// Returns a value with its unit, "infinite" or "unknown".

@@ -8,6 +8,9 @@
 
 namespace gladstone::inline cases {
 
+/// Spacing of the maps of /field [px]; turbulent fronts are a few pixels wide.
+inline constexpr int truth_map_spacing_px = 2;
+
 /// Writes truth.h5: /dots, /rays, /field (docs/file-formats.md).
 /// @param table  measured errors of the deflection table; null: no table was used
 void write_truth(std::string const& path, Scene const& scene, Rendering const& rendering, FieldMap const& field,

@@ -28,19 +28,6 @@ Vec3d stated_spacing(FieldSource const& source) {
   return spacing;
 }
 
-/// Describes spacings, "spacing 1 x 1.2 x (not stated in the file)".
-std::string spacing_text(FieldSource const& source, Vec3d const& stated) {
-  std::string text;
-  bool any = false;
-  for (int axis = 0; axis < 3; ++axis) {
-    bool const single = source.grid().nodes[static_cast<std::size_t>(axis)] == 1, known = std::isfinite(stated[axis]);
-    any = any || known;
-    text += axis > 0 ? " x " : "";
-    text += known ? fmt::format("{:.6g}", stated[axis]) : single ? "(one node)" : "(not stated in the file)";
-  }
-  return any ? "spacing " + text : "spacing not stated in the file";
-}
-
 /// Returns the distance from the first node to the last along each axis [mm]; NaN where the spacing is undefined.
 Vec3d extent_mm(FieldSource const& source) {
   FieldUnits const& units = source.units();
@@ -98,14 +85,11 @@ FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::st
   std::string const undefined = units.undefined(), assumed = undefined.empty() ? units.assumed() : "";
   FieldPlace place;
   place.spacing = stated_spacing(source);
-  place.spacing_text = spacing_text(source, place.spacing);
   place.extent_mm = extent_mm(source);
   std::string const values = units.values.empty() ? "have no stated unit" : "are in " + units.values;
   if (undefined.empty()) {
-    place.text =
-        fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
-                    assumed.empty() ? "lengths are in " + units.length : assumed, place.extent_mm.x, place.extent_mm.y,
-                    place.extent_mm.z, values);
+    place.text = fmt::format("{} unless spacing_mm is given; values {}",
+                             assumed.empty() ? "lengths are in " + units.length : assumed, values);
   } else {
     place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined, values);
     place.assumption = undefined + "; give " + spacing_key;
@@ -113,13 +97,10 @@ FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::st
   if (!assumed.empty()) place.assumption = assumed + "; if that is wrong, give " + spacing_key;
   if (setup.empty()) return place;
 
-  double const mm = unit::millimetre;
   Setup const whole = load_case_setup(setup, {}).setup;
   if (is_spaced(whole, velocity)) place.assumption.clear();
   FieldCoverage const& seen = place.coverage.emplace(
       field_coverage(velocity ? velocity_region(whole, source, file) : density_region(whole, source, file), whole));
-  place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm in the view of {}", 100 * seen.share,
-                            seen.view.x / mm, seen.view.y / mm, setup);
   if (auto const warning = seen.warning(); warning && !velocity) place.text += "; " + to_string(*warning);
   return place;
 }
@@ -131,13 +112,6 @@ nlohmann::json units_json(FieldUnits const& units) {
           {"assumed", named(assumed)},
           {"unknown", named(undefined)},
           {"values", named(units.values)}};
-}
-
-nlohmann::json coverage_json(FieldPlace const& place, std::string const& setup) {
-  if (!place.coverage) return nullptr;
-  double const mm = unit::millimetre;
-  Vec2d const view = place.coverage->view;
-  return {{"share", place.coverage->share}, {"view_mm", {view.x / mm, view.y / mm}}, {"setup", setup}};
 }
 
 }  // namespace gladstone::inline commands

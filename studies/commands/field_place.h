@@ -18,11 +18,10 @@ struct FieldFile {
 
 /// Position and extent of a field file, and its coverage of a setup's view.
 struct FieldPlace {
-  Vec3d spacing{};           ///< spacing as stated, in the file's unit of length; NaN: not stated, or a single node
-  std::string spacing_text;  ///< the same as readable text
-  Vec3d extent_mm{};         ///< distance from the first node to the last along x, y, z [mm]; NaN: undefined
+  Vec3d spacing{};    ///< spacing as stated, in the file's unit of length; NaN: not stated, or a single node
+  Vec3d extent_mm{};  ///< distance from the first node to the last along x, y, z [mm]; NaN: undefined
   std::optional<FieldCoverage> coverage;  ///< empty without a setup
-  std::string text;                       ///< units, extent and coverage as readable text
+  std::string text;                       ///< units, and a warning of the coverage, as readable text
   std::string assumption;                 ///< assumption made about lengths, or why they are undefined; empty: neither
 };
 
@@ -34,7 +33,5 @@ FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::st
 
 /// Returns the units of lengths and values as JSON, null if the file names none; `length_m`, the unit used; `unknown`.
 nlohmann::json units_json(FieldUnits const& units);
-/// Returns the coverage of a setup's view as JSON: {share, view_mm, setup}; null without a setup.
-nlohmann::json coverage_json(FieldPlace const& place, std::string const& setup);
 
 }  // namespace gladstone::inline commands

@@ -16,12 +16,7 @@ namespace gladstone::inline commands {
 namespace {
 
 /// @param csv  true: prints the quantities as CSV instead of the text
-/// @throws DataError for CSV if the description has no quantities
 int print(GlobalOptions const& options, Description const& description, bool csv) {
-  if (csv && description.rows.empty()) {
-    throw DataError(ErrorCode::arguments, "info",
-                    "writes CSV for lens, mie, particles and setup only; use --json instead of --csv");
-  }
   print_result(options, description.json, csv ? rows_csv(description.rows) : description.text);
   return ok;
 }
@@ -59,9 +54,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--x", arguments->x, "Size parameter pi d n / lambda of the sphere, for info mie");
   app.add_option("--m", arguments->m,
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
-  app.add_flag("--csv", arguments->csv,
-               "Print the quantities of info lens, mie, particles or setup as CSV: key, symbol, label, value, unit and "
-               "source");
+  app.add_flag("--csv", arguments->csv, "Print the quantities as CSV: key, symbol, label, value, unit and source");
   return [arguments, &options] {
     check_figure_ending(arguments->figure);
     if (arguments->kind == "mie") {

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "render/base/units.h"
 #include "render/base/vec.h"
 #include "render/files/fields/field_file.h"
 #include "studies/case/json_text.h"
@@ -17,23 +19,6 @@
 
 namespace gladstone::inline commands {
 namespace {
-
-nlohmann::json json_of(Vec3d const& values) {
-  return {number_or_null(values.x), number_or_null(values.y), number_or_null(values.z)};
-}
-
-/// Describes the steepest differences, "steepest difference between neighbours 0.02, 0.05, unknown per unit length
-/// along x, y, z".
-std::string steepest_text(Vec3d const& steepest, FieldPlace const& place) {
-  std::string text;
-  bool any = false;
-  for (int axis = 0; axis < 3; ++axis) {
-    any = any || std::isfinite(place.spacing[axis]);
-    text += axis > 0 ? ", " : "";
-    text += std::isfinite(steepest[axis]) ? fmt::format("{:.4g}", steepest[axis]) : "unknown";
-  }
-  return "steepest difference between neighbours " + text + (any ? " per unit length" : "") + " along x, y, z";
-}
 
 /// Draws the planes through the middle of a field. @return false without gnuplot
 bool draw_field(std::string const& path, FieldSource& source, FieldPlace const& place) {
@@ -60,24 +45,47 @@ std::unique_ptr<FieldSource> open_scalar_or_velocity(std::string const& path, st
   }
 }
 
-/// Returns a property of the components for JSON: one value for a scalar field, an array of values for a velocity.
-template <class Value>
-nlohmann::json of_components(std::vector<FieldStatistics> const& seen, Value const& value_of) {
-  if (seen.size() == 1) return value_of(seen.front());
-  nlohmann::json all = nlohmann::json::array();
-  for (FieldStatistics const& one : seen) all.push_back(value_of(one));
-  return all;
-}
-
-/// Describes the values: "values 1 to 2, steepest difference ...", for a velocity of each component.
-std::string values_text(std::vector<FieldStatistics> const& seen, FieldPlace const& place) {
-  std::string text;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    text += fmt::format("{}{} {:.6g} to {:.6g}, {}", text.empty() ? "" : "; ",
-                        seen.size() == 1 ? "values" : std::string(1, "uvw"[i]), seen[i].minimum, seen[i].maximum,
-                        steepest_text(seen[i].steepest, place));
+/// Quantities of a field, those along an axis and of a component with their indices as the last parts of the keys.
+std::vector<ResultRow> make_field_rows(FieldSource const& source, std::vector<FieldStatistics> const& seen,
+                                       FieldPlace const& place) {
+  FieldUnits const& units = source.units();
+  std::vector<ResultRow> rows;
+  auto const add = [&rows](std::string key, std::string label, double value, std::string const& unit = "",
+                           char const* note = "") -> ResultRow& {
+    return rows.emplace_back(
+        ResultRow{.key = std::move(key), .label = std::move(label), .value = value, .unit = unit, .note = note});
+  };
+  auto const add_axes = [&add](std::string const& key, std::string const& label, Vec3d const& values,
+                               std::string const& unit) {
+    for (int axis = 0; axis < 3; ++axis)
+      add(fmt::format("{}.{}", key, axis), fmt::format("{} along {}", label, "xyz"[axis]), values[axis], unit);
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    add(fmt::format("nodes.{}", axis), fmt::format("nodes along {}", "xyz"[axis]), source.grid().nodes[axis]).whole =
+        true;
   }
-  return text;
+  for (int axis = 0; axis < 3; ++axis) {
+    bool const single = source.grid().nodes[static_cast<std::size_t>(axis)] == 1;
+    add(fmt::format("spacing.{}", axis), fmt::format("spacing along {}", "xyz"[axis]), place.spacing[axis],
+        units.length,
+        std::isfinite(place.spacing[axis]) ? ""
+        : single                           ? "one node"
+                                           : "not stated in the file");
+  }
+  add_axes("extent_mm", "extent", place.extent_mm, "mm");
+  add("components", "components", source.values()).whole = true;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    std::string const index = seen.size() == 1 ? "" : fmt::format(".{}", i);
+    std::string const of = seen.size() == 1 ? "" : fmt::format(" of {}", "uvw"[i]);
+    add("minimum" + index, "smallest value" + of, seen[i].minimum, units.values);
+    add("maximum" + index, "largest value" + of, seen[i].maximum, units.values);
+    add_axes("steepest_gradient" + index, "steepest difference" + of + " per unit length", seen[i].steepest, "");
+  }
+  if (!place.coverage) return rows;
+  add("coverage.share", "fraction of the view that it fills", place.coverage->share);
+  add("coverage.view_mm.0", "width of the view", place.coverage->view.x / unit::millimetre, "mm");
+  add("coverage.view_mm.1", "height of the view", place.coverage->view.y / unit::millimetre, "mm");
+  return rows;
 }
 
 }  // namespace
@@ -85,7 +93,6 @@ std::string values_text(std::vector<FieldStatistics> const& seen, FieldPlace con
 Description describe_field(std::string const& path, std::string const& dataset, std::string const& axes,
                            std::string const& setup, std::string const& figure) {
   auto const source = open_scalar_or_velocity(path, dataset, axes);
-  RegularGrid const& grid = source->grid();
   std::vector<FieldStatistics> seen = field_statistics(*source);
   FieldPlace const place = field_place(*source, {path, dataset, axes}, setup);
   for (FieldStatistics& one : seen) {  // convert differences to differences per unit length, which are unknown along an
@@ -99,24 +106,24 @@ Description describe_field(std::string const& path, std::string const& dataset, 
   Warnings const notes = source->notes();
   for (Warning const& note : notes) log_warning(at_place(path, note));
   if (!place.assumption.empty()) log_warning({WarningCode::assumed, path, place.assumption});
-  nlohmann::json json{
-      {"dataset", source->name()},
-      {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
-      {"spacing", json_of(place.spacing)},
-      {"components", source->values()},
-      {"minimum", of_components(seen, [](FieldStatistics const& one) -> nlohmann::json { return one.minimum; })},
-      {"maximum", of_components(seen, [](FieldStatistics const& one) -> nlohmann::json { return one.maximum; })},
-      {"steepest_gradient", of_components(seen, [](FieldStatistics const& one) { return json_of(one.steepest); })},
-      {"axes",
-       {{"order", reading.axes}, {"by", reading.by}, {"shape", reading.shape}, {"turned_round", reading.turned_round}}},
-      {"notes", to_strings(notes)},
-      {"units", units_json(source->units())},
-      {"extent_mm", json_of(place.extent_mm)},
-      {"coverage", coverage_json(place, setup)}};
+  std::vector<ResultRow> rows = make_field_rows(*source, seen, place);
+  nlohmann::json json(rows_json(rows));
+  json.update({{"dataset", source->name()},
+               {"axes",
+                {{"order", reading.axes},
+                 {"by", reading.by},
+                 {"shape", reading.shape},
+                 {"turned_round", reading.turned_round}}},
+               {"notes", to_strings(notes)},
+               {"units", units_json(source->units())}});
+  if (place.coverage) {
+    json["coverage"]["setup"] = setup;
+  } else {
+    json["coverage"] = nullptr;
+  }
   if (!figure.empty() && draw_field(figure, *source, place)) json["figure"] = figure;
-  return {json_text(json),
-          fmt::format("{}: {} x {} x {} nodes, {}, {}; {}; {}", source->name(), grid.nodes[0], grid.nodes[1],
-                      grid.nodes[2], place.spacing_text, values_text(seen, place), reading.text(), place.text)};
+  std::string text = fmt::format("{}: {}\n{}  {}\n", source->name(), reading.text(), rows_text(rows), place.text);
+  return {json_text(json), std::move(text), std::move(rows)};
 }
 
 }  // namespace gladstone::inline commands

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "render/base/error.h"
 #include "studies/case/image_statistics.h"
@@ -28,15 +29,15 @@ int count_unused_bits(Image<double> const& image) {
   return used == 0 ? 0 : std::countr_zero(used);
 }
 
-}  // namespace
+/// Range of the grey levels of an image.
+struct GreyLevels {
+  double least, most;      ///< extremes of the finite pixels
+  std::size_t not_finite;  ///< number of pixels that are NaN or infinite
+};
 
-Description describe_image(std::string const& path) {
-  ImageMetadata metadata;
-  Image<double> const image = read_image(path, &metadata);
-  return describe_image(path, image, metadata);
-}
-
-Description describe_image(std::string const& name, Image<double> const& image, ImageMetadata const& metadata) {
+/// @param name  name of the image in messages
+/// @throws DataError if no pixel is finite
+GreyLevels find_grey_levels(std::string const& name, Image<double> const& image) {
   std::size_t const not_finite = count_not_finite(image);
   if (not_finite == image.size()) {
     throw DataError(ErrorCode::invalid_value, name,
@@ -52,37 +53,56 @@ Description describe_image(std::string const& name, Image<double> const& image, 
     least = std::min(least, value);
     most = std::max(most, value);
   }
+  return {.least = least, .most = most, .not_finite = not_finite};
+}
+
+std::vector<ResultRow> image_rows(Image<double> const& image, ImageMetadata const& metadata, GreyLevels const& levels) {
+  std::vector<ResultRow> rows;
+  auto const add = [&rows](char const* key, char const* label, double value, char const* unit = "",
+                           std::string note = "") -> ResultRow& {
+    return rows.emplace_back(
+        ResultRow{.key = key, .label = label, .value = value, .unit = unit, .note = std::move(note)});
+  };
+  auto const add_count = [&add](char const* key, char const* label, auto count, char const* unit = "",
+                                std::string note = "") {
+    add(key, label, static_cast<double>(count), unit, std::move(note)).whole = true;
+  };
   int const unused_bits = count_unused_bits(image);
   ImageStatistics const seen = image_statistics(image);
-  nlohmann::json const json{{"columns", image.columns()},
-                            {"rows", image.rows()},
-                            {"bit_depth", metadata.bit_depth},
-                            {"unused_bits", unused_bits},
-                            {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
-                            {"minimum", least},
-                            {"maximum", most},
-                            {"mean", seen.mean},
-                            {"not_finite", not_finite},
-                            {"dot_diameter_px", number_or_null(seen.dot_diameter_px)},
-                            {"channels", metadata.channels},
-                            {"orientation", metadata.orientation},
-                            {"background", number_or_null(seen.background)},
-                            {"dot_height", number_or_null(seen.dot_height)},
-                            {"noise", number_or_null(seen.noise)},
-                            {"snr", number_or_null(seen.snr())}};
-  return {json_text(json),
-          fmt::format(
-              "{}: {} x {} px, {} bits{}{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, {}, {}", name, image.columns(),
-              image.rows(), metadata.bit_depth,
-              unused_bits > 0 ? fmt::format(" (all levels are multiples of {})", 1 << unused_bits) : "",
-              metadata.channels >= 3 ? ", colour converted to luminance" : "",
-              metadata.orientation == 1 ? "" : fmt::format(", Orientation {} rotated upright", metadata.orientation),
-              least, most, seen.mean,
-              std::isfinite(seen.dot_diameter_px) ? fmt::format("dots {:.2f} px (e^-2)", seen.dot_diameter_px)
-                                                  : "dots of unknown diameter",
-              std::isfinite(seen.snr()) ? fmt::format("SNR {:.3g} (dots {:.4g} levels high, noise {:.3g})", seen.snr(),
-                                                      seen.dot_height, seen.noise)
-                                        : "SNR unknown (no noise or no dots detected)")};
+  char const* const undetected = std::isfinite(seen.snr()) ? "" : "no noise or no dots detected";
+  add_count("columns", "columns", image.columns(), "px");
+  add_count("rows", "rows", image.rows(), "px");
+  add_count("bit_depth", "bits per pixel", metadata.bit_depth);
+  add_count("unused_bits", "lowest bits that are 0 in all pixels", unused_bits, "",
+            unused_bits > 0 ? fmt::format("all levels are multiples of {}", 1 << unused_bits) : "");
+  add_count("channels", "channels", metadata.channels, "",
+            metadata.channels >= 3 ? "colour converted to luminance" : "");
+  add_count("orientation", "Orientation", metadata.orientation, "", metadata.orientation == 1 ? "" : "rotated upright");
+  add("pixel_pitch_um", "pixel pitch", metadata.pixel_pitch_m * 1e6, "um",
+      metadata.pixel_pitch_m > 0 ? "" : "not stated in the file");
+  add("minimum", "smallest grey level", levels.least);
+  add("maximum", "largest grey level", levels.most);
+  add("mean", "mean grey level", seen.mean);
+  add_count("not_finite", "pixels without a finite value", levels.not_finite);
+  add("dot_diameter_px", "diameter of the dots (e^-2)", seen.dot_diameter_px, "px");
+  add("background", "level of the background", seen.background);
+  add("dot_height", "height of the dots above the background", seen.dot_height);
+  add("noise", "standard deviation of the noise", seen.noise);
+  add("snr", "signal-to-noise ratio", seen.snr(), "", undetected).symbol = "SNR";
+  return rows;
+}
+
+}  // namespace
+
+Description describe_image(std::string const& path) {
+  ImageMetadata metadata;
+  Image<double> const image = read_image(path, &metadata);
+  return describe_image(path, image, metadata);
+}
+
+Description describe_image(std::string const& name, Image<double> const& image, ImageMetadata const& metadata) {
+  std::vector<ResultRow> rows = image_rows(image, metadata, find_grey_levels(name, image));
+  return {json_text(nlohmann::json(rows_json(rows))), name + '\n' + rows_text(rows), std::move(rows)};
 }
 
 }  // namespace gladstone::inline commands

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
@@ -12,6 +13,7 @@
 #include "render/base/progress.h"
 #include "render/files/output_file.h"
 #include "render/medium/field_volume.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/case.h"
 #include "studies/compare/tomography.h"
 #include "studies/compare/tomography_file.h"
@@ -82,7 +84,8 @@ std::vector<double> turn_field(MediumSetup const& setup, BuiltMedium const& medi
 }  // namespace
 
 std::vector<std::string> write_tomography_setups(TomographyPlan const& plan, std::string const& folder) {
-  CaseSetup const loaded = load_case_setup(plan.setup, {});
+  SetupDocument const document = read_setup_document(plan.setup);
+  CaseSetup const loaded = load_case_setup(document.copy());
   MediumSetup const& medium = loaded.setup.medium;
   if (medium.field.kind == FieldKind::none || medium.field.extrude)
     throw SetupError(
@@ -99,7 +102,10 @@ std::vector<std::string> write_tomography_setups(TomographyPlan const& plan, std
     write_density_volume(base + ".h5", grid, turn_field(medium, built, angle, grid), loaded.document.resolved());
     std::string const field =
         fmt::format("medium.field={{ kind = \"file\", file = \"{}\", dataset = \"density_kg_m3\" }}", base + ".h5");
-    CaseSetup const view = load_case_setup(plan.setup, {field, "medium.thickness_mm=\"auto\""});
+    SetupDocument turned = document.copy();
+    turned.override_key(field);
+    turned.override_key("medium.thickness_mm=\"auto\"");
+    CaseSetup const view = load_case_setup(std::move(turned));
     OutputFile::write_text(base + ".toml", view.document.resolved());
     setups.push_back(base + ".toml");
     progress.advance();

@@ -153,6 +153,9 @@ const figures = (function () {
     return (layer.name ? layer.name + "\n" : "") + words + "\n" + said(label("y"), shown(c[1][i])) + span;
   }
 
+  /* True for a line between points that the next layer shows with their errors. */
+  const connects = (layers, layer) => { const next = layers[layers.indexOf(layer) + 1]; return layer.kind === "line" && !layer.name && !!next && next.kind === "errors" && next.colour === layer.colour; };
+
   /* Draws a figure; everything it needs is in its data. State: ranges of the panels and layers that are hidden, as chosen. */
   function drawFigure(plot, figure, label, mapText, state) {
     state = state || { ranges: {}, hidden: new Set() };
@@ -188,7 +191,7 @@ const figures = (function () {
       if (panel.map) drawMap(svg, panel.map, box, x, y);
       for (const layer of layers) {
         const drawn = drawLayer(room, layer, x, y, box.bottom);
-        if (figure.kind === "drawing" || !["line", "points", "errors", "bars", "levels"].includes(layer.kind) || drawn.length > 3000 || (layer.notes && !layer.notes.length)) continue;
+        if (connects(layers, layer) || figure.kind === "drawing" || !["line", "points", "errors", "bars", "levels"].includes(layer.kind) || drawn.length > 3000 || (layer.notes && !layer.notes.length)) continue;
         for (const i of drawn) {
           const wide = layer.kind === "bars" ? Math.abs(x(layer.columns[0][i] + layer.columns[2][i]) - x(layer.columns[0][i])) : 11, px = x(layer.columns[0][i]), py = y(layer.columns[1][i]);
           const zero = layer.kind === "bars" ? (y.base ? box.bottom : y(0)) : py;

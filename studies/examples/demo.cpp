@@ -8,9 +8,12 @@
 #include <filesystem>
 
 #include "analysis/errors/scattered_grid.h"
+#include "analysis/vectors/vector_file.h"
 #include "render/base/units.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
+#include "render/files/source_files.h"
+#include "render/planning.h"
 #include "studies/case/case.h"
 #include "studies/case/shared_folder.h"
 #include "studies/case/truth_file.h"
@@ -91,6 +94,21 @@ SeedFigure4Instant figure_instant(std::string const& heading, FieldMap const& fi
   return instant;
 }
 
+/// Correlates the frames of a rendered case in memory and writes its vectors.
+/// @param place  folder of the case
+Measurement correlate_instant(CaseSetup const& loaded, RecordedCase const& made, std::string const& place,
+                              Backend const& device) {
+  StoredFrames const& levels = *made.frames.levels;
+  HostFrames const frames(levels.reference(), levels.flow());
+  Measurement measured = correlate_frames(in_case(place, case_file::reference), in_case(place, case_file::flow), frames,
+                                          loaded.correlate, device);
+  FileOrigin origin{"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, measured.device};
+  origin.sources.add_known("reference", pixel_sha256(grey_levels(frames.reference())));
+  origin.sources.add_known("flow", pixel_sha256(grey_levels(frames.flow())));
+  write_vectors(in_case(place, case_file::vectors), measured.field, origin);
+  return measured;
+}
+
 /// Returns the results of the paper's case over the compared vectors.
 DemoInstant::Paper paper_numbers(Comparison const& comparison) {
   VectorMask const& mask = comparison.mask;
@@ -159,7 +177,7 @@ std::string run_demo(std::string const& folder, Backend const& device) {
     refuse_case_over_inputs(place, loaded.document.file_names());
     RecordedCase const made = render_to_folder(loaded, *device.renderer, place);
     spdlog::info("{}: correlating", instant.name);
-    Measurement const measured = correlate_case(place, "", nullptr, device);
+    Measurement const measured = correlate_instant(loaded, made, place, device);
     spdlog::info("{}: {} vectors in {:.1f} s; comparing with truth and theory", instant.name, measured.field.size(),
                  measured.seconds);
     GroundTruth const& dots = made.rendered.rendering->truth;
@@ -170,8 +188,7 @@ std::string run_demo(std::string const& folder, Backend const& device) {
     OutputFile::write_text(in_case(place, case_file::errors), errors_json(comparison));
     result.paper = paper_numbers(comparison);
     draw_or_warn([&] { draw_comparison(place, comparison); });
-    std::string const truth_path = in_case(place, case_file::truth);
-    FieldMap const field = read_field_map(truth_path);
+    FieldMap const field = field_in_view(made.prepared.scene, made.rendered.rendering->plan, truth_map_spacing_px);
     axes = axes_of(field);
     panels.push_back(figure_instant(result.heading, field, dots));
     spdlog::info("{}: tracing finer fields", instant.name);

@@ -9,10 +9,7 @@
 #include <vector>
 
 #include "analysis/errors/error_summary.h"
-#include "render/files/image_file.h"
-#include "render/scene/setup_document.h"
-#include "studies/case/case_files.h"
-#include "studies/case/render_setup.h"
+#include "studies/case/case.h"
 #include "studies/case/shared_folder.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/draw_or_warn.h"
@@ -76,10 +73,11 @@ std::string run_gallery(std::string const& folder, Backend const& device) {
     spdlog::info("{}: {}", picture.name, picture.title);
     std::string const place = (fs::path(folder) / picture.name).string();
     std::string const path = (fs::path(cases) / (std::string(picture.name) + ".toml")).string();
-    SetupRenderer setup(read_setup_document(path), path);
-    setup.refuse_over_inputs(place);
-    setup.render(*device.renderer, place);
-    images.push_back(read_image(in_case(place, case_file::reference)));
+    CaseSetup loaded = load_case_setup(path, {});
+    std::vector<std::string> inputs = loaded.document.file_names();
+    inputs.push_back(path);
+    refuse_case_over_inputs(place, inputs);
+    images.push_back(render_to_folder(loaded, *device.renderer, place).frames.levels->reference());
   }
   double const white = std::max(1.0, quantile(levels_of(images.front()), shown_share));
   std::string text = fmt::format("Images in {}: level 0 is black, levels from {:.0f} on are white.\n\n", folder, white);

@@ -1,5 +1,3 @@
-#include "studies/figures/study_budget.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

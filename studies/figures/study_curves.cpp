@@ -1,5 +1,3 @@
-#include "studies/figures/study_curves.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <limits>
 
 #include "studies/figures/study_drawings.h"
+#include "studies/figures/study_figures.h"
 
 namespace gladstone::inline figures {
 namespace {
@@ -27,15 +26,8 @@ struct CurvePanel {
   std::vector<Curve> curves;
 };
 
-struct Reference {
-  char const* measure;
-  char const* name;
-};
-constexpr Reference references[] = {{"ray_truth.rms_px", "measured − ray truth"},
-                                    {"eq9.rms_px", "measured − Eq. 9"},
-                                    {"eq9_cone.rms_px", "measured − aperture-averaged Eq. 9"},
-                                    {"window_truth.rms_px", "measured − ray truth on the window"}};
 constexpr char const* signal = "signal_px";
+constexpr char const* error_label = "rms per component [px]";
 
 /// Creates curves and accumulates the range of their values and the kind of their points.
 struct CurveMaker {
@@ -45,7 +37,7 @@ struct CurveMaker {
   std::size_t repeats = 0;
   double low = std::numeric_limits<double>::infinity(), high = 0;
 
-  Curve operator()(std::string name, std::string_view colour, CurveChoice const& choice, char const* measure,
+  Curve operator()(std::string name, std::string_view colour, CurveChoice const& choice, std::string const& measure,
                    bool dashed = false) {
     Curve curve{std::move(name), std::string(colour), dashed, {}};
     for (std::size_t place = 0; place < cells.axis(axis).size(); ++place) {
@@ -101,9 +93,9 @@ std::vector<Layer> make_curve_layers(FigureAxis const& axis, CurvePanel const& p
   return layers;
 }
 
-/// Arranges panels side by side with a common title and error scale.
-Figure lay_out(FigureAxis const& axis, std::vector<CurvePanel> const& panels, double low, double high,
-               std::string const& title, std::string const& caption) {
+/// Arranges panels side by side with a common title and y axis.
+Figure lay_out(FigureAxis const& axis, std::vector<CurvePanel> const& panels, Axis const& y, std::string const& title,
+               std::string const& caption) {
   int const count = static_cast<int>(panels.size());
   double const width = count == 1 ? 660.0 : 500.0;
   std::ptrdiff_t named = 0;
@@ -120,7 +112,7 @@ Figure lay_out(FigureAxis const& axis, std::vector<CurvePanel> const& panels, do
     double const left = 92.0 + i * (width + 96.0);
     Panel panel{.box = {left, left + width, static_cast<double>(top), static_cast<double>(top + 360)}};
     panel.x = make_x_axis(axis, width);
-    panel.y = make_y_axis("rms per component [px]", low, high);
+    panel.y = y;
     panel.layers = make_curve_layers(axis, from);
     panel.grid = Grid::both;
     panel.legend = {LegendPlace::above, top - legend - 2.0};
@@ -136,21 +128,21 @@ std::optional<Figure> make_error_curves(StudyCells const& cells, std::size_t axi
   FigureAxis const& axis = cells.axis(axis_index);
   std::vector<CurveChoice> const choices = curves_over(cells, axis_index, 7);
   CurveMaker make{cells, axis_index};
+  std::vector<ErrorMeasure> const errors = known_errors(cells);
   std::vector<CurvePanel> panels;
   std::string dashes;
   if (choices.size() == 1) {
     CurvePanel panel{choices.front().name, {}};
     std::size_t colour = 0;
-    for (Reference const& reference : references) {
-      panel.curves.push_back(make(reference.name, house_colour(colour++), choices.front(), reference.measure));
-    }
+    for (ErrorMeasure const& error : errors)
+      panel.curves.push_back(make(error.name, house_colour(colour++), choices.front(), error.measure));
     panel.curves.push_back(make("signal: ray truth itself", "#404040", choices.front(), signal, true));
     panels.push_back(std::move(panel));
   } else {
-    for (Reference const& reference : {references[0], references[1]}) {
-      CurvePanel panel{reference.name, {}};
+    for (std::size_t k = 0; k < std::min<std::size_t>(2, errors.size()); ++k) {
+      CurvePanel panel{errors[k].name, {}};
       for (std::size_t i = 0; i < choices.size(); ++i) {
-        panel.curves.push_back(make(choices[i].name, house_colour(i), choices[i], reference.measure));
+        panel.curves.push_back(make(choices[i].name, house_colour(i), choices[i], errors[k].measure));
       }
       for (std::size_t i = 0; i < choices.size(); ++i) {
         panel.curves.push_back(make("", house_colour(i), choices[i], signal, true));
@@ -160,7 +152,7 @@ std::optional<Figure> make_error_curves(StudyCells const& cells, std::size_t axi
     dashes = "; dashed: signal (rms of the ray truth)";
   }
   if (!(make.high > 0)) return std::nullopt;
-  return lay_out(axis, panels, make.low, make.high, "Error against " + axis.title,
+  return lay_out(axis, panels, make_y_axis(error_label, make.low, make.high), "Error against " + axis.title,
                  fmt::format("{}\n{}{}", study_name(cells), meaning(make.only_repeats_differ, make.repeats), dashes));
 }
 
@@ -169,25 +161,43 @@ std::optional<Figure> make_repeats(StudyCells const& points, std::size_t axis_in
   std::vector<CurveChoice> const choices = curves_over(points, axis_index, 7);
   CurveMaker make{points, axis_index};
   std::vector<CurvePanel> panels;
-  for (auto const& [error, name] : {std::pair{"ray_truth", references[0].name}, std::pair{"eq9", references[1].name}}) {
+  for (auto const& [error, name] :
+       {std::pair{"ray_truth", "measured − ray truth"}, std::pair{"eq9", "measured − Eq. 9"}}) {
     CurvePanel panel{name, {}};
     for (std::size_t i = 0; i < choices.size(); ++i) {
       std::string const curve = choices.size() > 1 ? choices[i].name : "the same in every repeat";
-      panel.curves.push_back(make(curve, house_colour(i), choices[i], fmt::format("{}.systematic_px", error).c_str()));
+      panel.curves.push_back(make(curve, house_colour(i), choices[i], fmt::format("{}.systematic_px", error)));
     }
     for (std::size_t i = 0; i < choices.size(); ++i) {
       std::string const curve = choices.size() > 1 ? "" : "changes between repeats";
-      panel.curves.push_back(
-          make(curve, house_colour(i), choices[i], fmt::format("{}.scatter_px", error).c_str(), true));
+      panel.curves.push_back(make(curve, house_colour(i), choices[i], fmt::format("{}.scatter_px", error), true));
     }
     panels.push_back(std::move(panel));
   }
   if (!(make.high > 0)) return std::nullopt;
   return lay_out(
-      axis, panels, make.low, make.high, "Error over the repeats, against " + axis.title,
+      axis, panels, make_y_axis(error_label, make.low, make.high), "Error over the repeats, against " + axis.title,
       fmt::format("study {}, {} points{}\nsolid: the same in every repeat; dashed: standard deviation between "
                   "repeats (dots, rays, noise)",
                   points.table().name, points.finished(), make.only_repeats_differ ? "" : ", medians of them"));
+}
+
+std::optional<Figure> make_coverage(StudyCells const& cells, std::size_t axis_index) {
+  constexpr double normal_coverage = 0.6827;  // of normal errors by their standard deviation
+  FigureAxis const& axis = cells.axis(axis_index);
+  std::vector<CurveChoice> const choices = curves_over(cells, axis_index, 7);
+  CurveMaker make{cells, axis_index};
+  CurvePanel panel;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    panel.curves.push_back(
+        make(choices.size() > 1 ? choices[i].name : "all cases", house_colour(i), choices[i], coverage_measure));
+  }
+  if (!(make.high > 0)) return std::nullopt;
+  panel.curves.push_back({"68 %, as standard uncertainties of normal errors cover", "#404040", true,
+                          std::vector<Scatter>(axis.size(), {normal_coverage, normal_coverage, normal_coverage})});
+  return lay_out(axis, {panel}, {"fraction of the errors within their uncertainty", 0, 1},
+                 "Coverage of the uncertainty against " + axis.title,
+                 fmt::format("{}\n{}", study_name(cells), meaning(make.only_repeats_differ, make.repeats)));
 }
 
 }  // namespace gladstone::inline figures

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,31 @@
 
 namespace gladstone::inline figures {
 
+/// Figures of a study; nullopt if the study has no finite values to show.
+std::optional<Figure> make_error_curves(StudyCells const& cells, std::size_t axis);
+std::optional<Figure> make_error_map(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis);
+/// @param points  averages of a study with repeats (study_points()), which separate estimator and pattern; else null
+std::optional<Figure> make_budget(StudyCells const& cells, std::size_t axis, StudyCells const* points);
+/// Returns a figure of the errors that are common to all repeats, and of the scatter between repeats.
+/// @param points  averages of a study with repeats
+std::optional<Figure> make_repeats(StudyCells const& points, std::size_t axis);
+/// Returns a figure of the fraction of the errors that the estimated uncertainty covers.
+std::optional<Figure> make_coverage(StudyCells const& cells, std::size_t axis);
+/// Returns a figure of one measure against another, with one point per case.
+std::optional<Figure> make_case_points(StudyCells const& cells, std::string const& x_measure,
+                                       std::string const& y_measure);
+
 /// Common parts of the figures of a study.
 namespace study_drawing {
+
+/// rms error of the measurement against one reference.
+struct ErrorMeasure {
+  std::string measure;
+  std::string name;
+};
+/// Returns the errors that are known in some case. The first two are those against ray truth and against Eq. 9, or for
+/// PIV against the flow.
+std::vector<ErrorMeasure> known_errors(StudyCells const& cells);
 
 /// Adds the title and a caption of at most two lines.
 void add_texts(Figure& figure, std::string const& title, std::string const& caption);

@@ -4,23 +4,128 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <optional>
 
 #include "render/base/parallel.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/drawing/figure_texts.h"
-#include "studies/figures/study_budget.h"
-#include "studies/figures/study_curves.h"
 #include "studies/figures/study_drawings.h"
 #include "studies/sweep/study_points.h"
 
 namespace gladstone::inline figures {
+namespace study_drawing {
 namespace {
 
 using namespace plot;
-using namespace study_drawing;
+
+constexpr double between = 12;  ///< least distance of tick texts [px]
+constexpr double slant = 0.47;  ///< sine of the angle of slanted texts
+
+double tick_width(std::string const& text) { return text_width(text, font_of(Figure::Kind::chart, "tick")); }
+
+double longest_tick(FigureAxis const& axis) {
+  double longest = 0;
+  for (std::string const& label : axis.label) longest = std::max(longest, tick_width(label));
+  return longest;
+}
+
+/// Returns true if the texts of categories do not fit side by side.
+bool crowded(FigureAxis const& axis, double width_px) {
+  return longest_tick(axis) + between > width_px / static_cast<double>(axis.size());
+}
+
+/// Returns true if ticks at every number would overlap.
+bool dense(FigureAxis const& axis, double width_px) {
+  auto const at = [&](std::size_t i) { return axis.logarithmic ? std::log(axis.position[i]) : axis.position[i]; };
+  double const span = at(axis.size() - 1) - at(0);
+  for (std::size_t i = 1; i < axis.size(); ++i) {
+    double const gap = 0.9 * width_px * (at(i) - at(i - 1)) / span;
+    if (gap < 0.5 * (tick_width(axis.label[i]) + tick_width(axis.label[i - 1])) + between) return true;
+  }
+  return axis.binned;
+}
+
+/// Returns true if the texts of the ticks are slanted; numbers without names rather have automatic ticks.
+bool slanted(FigureAxis const& axis, double width_px) {
+  return axis.numeric ? axis.labelled && dense(axis, width_px) : crowded(axis, width_px);
+}
+
+}  // namespace
+
+void add_texts(Figure& figure, std::string const& title, std::string const& caption) {
+  figure.add_title(title);
+  auto const line = caption.find('\n');
+  double const middle = figure.width_px / 2.0, bottom = figure.height_px;
+  if (line != std::string::npos) {
+    figure.labels.push_back({caption.substr(0, line), middle, bottom - 28, TextRole::caption});
+    figure.labels.push_back({caption.substr(line + 1), middle, bottom - 12, TextRole::caption});
+  } else {
+    figure.labels.push_back({caption, middle, bottom - 14, TextRole::caption});
+  }
+}
+
+int room_below(FigureAxis const& axis, double width_px) {
+  return slanted(axis, width_px) ? 60 + static_cast<int>(slant * longest_tick(axis)) : 56;
+}
+
+std::vector<Tick> label_ticks(FigureAxis const& axis, std::vector<double> const& position) {
+  std::vector<Tick> ticks;
+  for (std::size_t i = 0; i < axis.size(); ++i) ticks.push_back({position[i], axis.label[i]});
+  return ticks;
+}
+
+Axis make_x_axis(FigureAxis const& axis, double width_px) {
+  Axis made{.label = axis.title, .ticks = label_ticks(axis, axis.position), .slanted = slanted(axis, width_px)};
+  double const first = axis.position.front(), last = axis.position.back();
+  if (!axis.numeric) {
+    made.low = -0.5;
+    made.high = last + 0.5;
+    return made;
+  }
+  made.logarithmic = axis.logarithmic;
+  double const margin = axis.logarithmic ? std::pow(last / first, 0.06) : 0.06 * (last - first);
+  made.low = axis.logarithmic ? first / margin : first - margin;
+  made.high = axis.logarithmic ? last * margin : last + margin;
+  if (!axis.labelled && dense(axis, width_px)) {
+    made.ticks = axis.logarithmic ? logarithmic_ticks(made.low, made.high) : std::vector<Tick>{};
+  }
+  return made;
+}
+
+Axis make_y_axis(std::string const& title, double low, double high) {
+  if (low > 0 && high > 4 * low) {
+    double const margin = std::pow(high / low, 0.06);
+    return {title, low / margin, high * margin, true, logarithmic_ticks(low / margin, high * margin)};
+  }
+  return {title, 0, high > 0 ? 1.12 * high : 1.0};
+}
+
+std::vector<ErrorMeasure> known_errors(StudyCells const& cells) {
+  std::vector<ErrorMeasure> errors{{"ray_truth.rms_px", "measured − ray truth"},
+                                   {"eq9.rms_px", "measured − Eq. 9"},
+                                   {"flow.rms_px", "measured − flow"},
+                                   {"eq9_cone.rms_px", "measured − aperture-averaged Eq. 9"},
+                                   {"window_truth.rms_px", "measured − ray truth on the window"}};
+  std::erase_if(errors, [&](ErrorMeasure const& error) {
+    std::vector<double> const values = cells.values(error.measure, cells.rows_at({}));
+    return std::none_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  });
+  return errors;
+}
+
+std::string study_name(StudyCells const& cells) {
+  return fmt::format("study {}, {} cases", cells.table().name, cells.finished());
+}
+
+std::string meaning(bool only_repeats_differ, std::size_t repeats) {
+  if (!only_repeats_differ) return "points: medians of the cases, bars: 10 to 90 % of them";
+  if (repeats < 2) return "points: single cases";
+  return fmt::format("points: root mean square over {} repeats, bars: smallest to largest", repeats);
+}
+
+}  // namespace study_drawing
+
+namespace {
 
 /// Converts a key path to a part of a file name.
 std::string file_part(std::string key) {
@@ -29,150 +134,40 @@ std::string file_part(std::string key) {
   return key;
 }
 
-/// Cases of a study and, for repeats, the averages of its points.
-struct CasesAndPoints {
-  explicit CasesAndPoints(StudyTable const& table)
-      : cells(table),
-        point_table(table.repeats() > 1 ? std::optional(study_points(table)) : std::nullopt),
-        points(point_table ? std::optional<StudyCells>(*point_table) : std::nullopt) {}
-  CasesAndPoints(CasesAndPoints const&) = delete;
-
-  std::optional<Figure> make_budget(std::size_t axis) const {
-    return gladstone::make_budget(cells, axis, points ? &*points : nullptr);
-  }
-
-  StudyCells cells;
-  std::optional<StudyTable> point_table;
-  std::optional<StudyCells> points;
-};
-
-/// Errors over two axes, as rows and columns of equal cells.
-struct ErrorMap {
-  char const* measure;
-  char const* heading;
-  Image<double> errors = {};
-};
-
-/// Returns an axis of equally wide cells, one for each position, even if the positions have a logarithmic scale.
-Axis make_cell_axis(FigureAxis const& axis) {
-  std::vector<double> indices(axis.size());
-  std::iota(indices.begin(), indices.end(), 0.0);
-  return {axis.title,       -0.5, static_cast<double>(axis.size()) - 0.5, false, label_ticks(axis, indices),
-          Axis::Marks::bare};
-}
-
-/// Draws maps of errors over two axes, side by side.
-class ErrorMapFigure {
- public:
-  ErrorMapFigure(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis)
-      : cells_(cells), x_axis_(x_axis), y_axis_(y_axis), x_(cells.axis(x_axis)), y_(cells.axis(y_axis)) {
-    for (ErrorMap& map : maps_) most_filled_ = std::max(most_filled_, fill(map));
-    logarithmic_ = high_ > 10 * low_;
-  }
-
-  /// @return nullopt if at most half of the cells have an error, since the axes vary together then
-  std::optional<Figure> make() const {
-    if (!(high_ > 0) || 2 * most_filled_ <= x_.size() * y_.size()) return std::nullopt;
-    double const cell = x_.size() > 8 ? 50.0 : 62.0;
-    double const width = std::max(240.0, cell * static_cast<double>(x_.size()));
-    double const height = std::clamp(44.0 * static_cast<double>(y_.size()), 160.0, 480.0);
-    double longest = 0;
-    for (std::string const& label : y_.label)
-      longest = std::max(longest, text_width(label, font_of(Figure::Kind::chart, "tick")));
-    double const left = 62.0 + longest, between = 40.0;
-    int const below = room_below(x_, width) + 44;
-    Figure figure{static_cast<int>(left + 2 * width + between + 126), static_cast<int>(86 + height) + below};
-    add_texts(figure, fmt::format("Error over {} and {}", x_.title, y_.title),
-              fmt::format("{}\n{}", study_name(cells_),
-                          !only_repeats_differ_ ? "median of all cases of a cell"
-                          : repeats_ > 1 ? fmt::format("root mean square over {} repeats; per component", repeats_)
-                                         : std::string("single cases; rms per component")));
-    for (std::size_t m = 0; m < maps_.size(); ++m) {
-      double const from = left + static_cast<double>(m) * (width + between);
-      Panel panel{.box = {from, from + width, 74, 86 + height - 12}, .title = maps_[m].heading};
-      panel.x = make_cell_axis(x_);
-      panel.x.slanted = room_below(x_, width) > 56;
-      panel.y = make_cell_axis(y_);
-      if (m > 0) panel.y = {.low = panel.y.low, .high = panel.y.high, .marks = Axis::Marks::none};
-      panel.map = Map{maps_[m].errors, 0, 1, 0, 1, Palette::sequential, logarithmic_ ? low_ : 0.0, high_, logarithmic_};
-      panel.map->has_bar = m > 0;
-      if (logarithmic_) panel.map->ticks = logarithmic_ticks(low_, high_);
-      if (x_.size() <= 12 && y_.size() <= 12) add_numbers(panel);
-      figure.panels.push_back(std::move(panel));
-    }
-    return figure;
-  }
-
- private:
-  /// Computes the errors of a map. @return number of cells with an error
-  std::size_t fill(ErrorMap& map) {
-    std::size_t filled = 0;
-    map.errors = Image<double>(static_cast<int>(x_.size()), static_cast<int>(y_.size()));
-    for (std::size_t j = 0; j < y_.size(); ++j) {
-      for (std::size_t i = 0; i < x_.size(); ++i) {
-        std::vector<std::size_t> const rows = cells_.rows_at({{x_axis_, i}, {y_axis_, j}});
-        bool const alone = cells_.only_repeats_differ(rows);
-        double const error = compute_scatter(cells_.values(map.measure, rows), alone).centre;
-        only_repeats_differ_ = only_repeats_differ_ && alone;
-        repeats_ = std::max(repeats_, rows.size());
-        map.errors(static_cast<int>(i), static_cast<int>(j)) = error;
-        if (!std::isfinite(error)) continue;
-        ++filled;
-        if (error > 0) low_ = std::min(low_, error);
-        high_ = std::max(high_, error);
-      }
-    }
-    return filled;
-  }
-
-  /// Adds the errors as numbers to the cells.
-  void add_numbers(Panel& panel) const {
-    Image<double> const& errors = panel.map->values;
-    for (int row = 0; row < errors.rows(); ++row) {
-      for (int column = 0; column < errors.columns(); ++column) {
-        double const error = errors(column, row);
-        if (!std::isfinite(error)) continue;
-        double const share = logarithmic_ ? std::log(error / low_) / std::log(high_ / low_) : error / high_;
-        panel.labels.push_back({fmt::format("{:.2g}", error), static_cast<double>(column), static_cast<double>(row),
-                                share > 0.6 ? TextRole::value_on_bright : TextRole::value_on_dark});
-      }
-    }
-  }
-
-  StudyCells const& cells_;
-  std::size_t x_axis_, y_axis_;
-  FigureAxis const& x_;
-  FigureAxis const& y_;
-  std::vector<ErrorMap> maps_{{"ray_truth.rms_px", "measured − ray truth [px]"},
-                              {"eq9.rms_px", "measured − Eq. 9 [px]"}};
-  bool only_repeats_differ_ = true, logarithmic_ = false;
-  std::size_t repeats_ = 0, most_filled_ = 0;  ///< largest number of cases of a cell, and of cells with an error
-  double low_ = std::numeric_limits<double>::infinity(), high_ = 0;  ///< range of the errors [px]
-};
-
-/// Returns a figure of the errors over two axes; nullopt if the study has no finite values to show.
-std::optional<Figure> make_error_map(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis) {
-  return ErrorMapFigure(cells, x_axis, y_axis).make();
-}
-
 }  // namespace
 
-std::vector<NamedFigure> make_budget_figures(StudyTable const& table) {
-  CasesAndPoints const study(table);
-  std::vector<std::size_t> axes = study.cells.varied();
-  if (axes.empty() && !table.axes.empty()) axes = {0};
-  std::vector<NamedFigure> figures;
-  for (std::size_t const axis : axes) {
-    if (std::optional<Figure> figure = study.make_budget(axis))
-      figures.push_back({study.cells.axis(axis).title, *std::move(figure)});
-  }
-  return figures;
+StudyFigureMaker::StudyFigureMaker(StudyTable const& table)
+    : cells_(table),
+      map_cells_(table, sampled_places_in_maps(table.points.size())),
+      point_table_(table.repeats() > 1 ? std::optional(study_points(table)) : std::nullopt),
+      points_(point_table_ ? std::optional<StudyCells>(*point_table_) : std::nullopt) {}
+
+std::optional<Figure> StudyFigureMaker::make_errors(std::size_t axis) const { return make_error_curves(cells_, axis); }
+
+std::optional<Figure> StudyFigureMaker::make_budget(std::size_t axis) const {
+  return figures::make_budget(cells_, axis, points_ ? &*points_ : nullptr);
+}
+
+std::optional<Figure> StudyFigureMaker::make_repeats(std::size_t axis) const {
+  return points_ ? figures::make_repeats(*points_, axis) : std::nullopt;
+}
+
+std::optional<Figure> StudyFigureMaker::make_coverage(std::size_t axis) const {
+  return figures::make_coverage(cells_, axis);
+}
+
+std::optional<Figure> StudyFigureMaker::make_map(std::size_t x_axis, std::size_t y_axis) const {
+  return make_error_map(map_cells_, x_axis, y_axis);
+}
+
+std::optional<Figure> StudyFigureMaker::make_case_points(std::string const& x_measure,
+                                                         std::string const& y_measure) const {
+  return figures::make_case_points(cells_, x_measure, y_measure);
 }
 
 std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table,
                                     std::vector<std::string> const& formats) {
-  CasesAndPoints const study(table);
-  StudyCells const &cells = study.cells, map_cells(table, sampled_places_in_maps(table.points.size()));
+  StudyFigureMaker const study(table);
   std::vector<Figure> figures;
   std::vector<std::string> paths;  // one per figure and format
   auto const add = [&](std::optional<Figure> figure, std::string const& name) {
@@ -180,15 +175,15 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
     figures.push_back(*std::move(figure));
     for (std::string const& format : formats) paths.push_back(fmt::format("{}/{}.{}", folder, name, format));
   };
-  std::vector<std::size_t> const& varied = cells.varied();
+  std::vector<std::size_t> const& varied = study.varied();
   for (std::size_t i = 0; i < varied.size(); ++i) {
-    std::string const name = file_part(cells.key(varied[i]));
-    add(make_error_curves(cells, varied[i]), "error_against_" + name);
+    std::string const name = file_part(table.axes[varied[i]].key);
+    add(study.make_errors(varied[i]), "error_against_" + name);
     add(study.make_budget(varied[i]), "budget_" + name);
-    if (study.points) add(make_repeats(*study.points, varied[i]), "repeats_" + name);
+    add(study.make_repeats(varied[i]), "repeats_" + name);
     for (std::size_t j = i + 1; j < varied.size(); ++j) {
-      add(make_error_map(map_cells, varied[j], varied[i]),
-          fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));
+      add(study.make_map(varied[j], varied[i]),
+          fmt::format("error_map_{}_{}", name, file_part(table.axes[varied[j]].key)));
     }
   }
   // gnuplot dominates the run time: run one process per file, in parallel

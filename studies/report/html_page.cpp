@@ -91,13 +91,14 @@ struct HtmlBlock {
   }
 
   std::string operator()(Chart const& chart) const {
-    std::string const place = chart.figures.empty() ? "" : fmt::format(" data-figures=\"{}\"", charts.size());
+    std::size_t const place = charts.size();
     nlohmann::json figures = nlohmann::json::array();
     for (auto const& [name, figure] : chart.figures)
       figures.push_back({{"name", name}, {"figure", figure_json(figure)}});
-    if (!figures.empty()) charts.push_back({{"chart", chart.kind}, {"figures", std::move(figures)}});
+    charts.push_back({{"chart", chart.kind}, {"figures", std::move(figures)}});
     return fmt::format(
-        "<figure class=\"chart\" data-chart=\"{}\"{}><figcaption>{}</figcaption>\n<div class=\"controls\"></div>"
+        "<figure class=\"chart\" data-chart=\"{}\" data-figures=\"{}\"><figcaption>{}</figcaption>\n<div "
+        "class=\"controls\"></div>"
         "<div class=\"plot\"></div>\n<p class=\"alt\">{}</p></figure>\n",
         escaped(chart.kind), place, escaped(chart.title), escaped(chart.alt));
   }

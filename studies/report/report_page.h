@@ -40,10 +40,10 @@ struct TextTable {
 };
 /// A chart that report.js draws: one of its figures, by the reader's choice; in Markdown, replaced by its description.
 struct Chart {
-  std::string kind;  ///< name of the chart; without figures a key of `composed` in report.js, which composes them
+  std::string kind;  ///< name of the chart
   std::string title;
   std::string alt;  ///< description in numbers
-  std::vector<NamedFigure> figures = {};
+  std::vector<NamedFigure> figures;
 };
 /// Two frames that can be shown alternately at the same position.
 struct FramePictures {
@@ -68,7 +68,7 @@ struct ReportPage {
   std::string question;
   std::vector<std::string> findings;
   std::vector<ReportSection> sections;
-  nlohmann::json data = nlohmann::json::object();  ///< data of the charts that report.js draws
+  nlohmann::json data = nlohmann::json::object();  ///< results for programs that read the report
   /// files of vectors whose header declares another number of vectors, or that are likely not read as they were written
   std::vector<std::string> doubtful;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/files/source_files.h"
@@ -107,27 +109,51 @@ Extremes extremes_of(StudyView const& study) {
   return {best, worst};
 }
 
-/// Adds the charts of errors, their causes and their uncertainty.
+/// Adds a figure if the study has its values.
+void add_figure(std::vector<NamedFigure>& figures, std::string name, std::optional<Figure> figure) {
+  if (figure) figures.push_back({std::move(name), *std::move(figure)});
+}
+
+/// Adds the figures of the errors, their causes and their uncertainty.
 /// @pre the first finding is that about the best and the worst case
 void add_charts(ReportPage& page, StudyView const& study) {
-  auto const free = std::count_if(study.table.axes.begin(), study.table.axes.end(),
-                                  [](StudyAxis const& axis) { return axis.labels.size() > 1; });
-  ReportSection errors{"Error over the axes", {}};
-  if (free > 0) errors.blocks.emplace_back(Chart{"curves", "A measure over an axis", page.findings.front()});
-  if (free > 1) errors.blocks.emplace_back(Chart{"cells", "A measure over two axes", strongest_axis(study)});
-  errors.blocks.emplace_back(Chart{"scatter", "A measure against another, one point per case", page.findings.front()});
-  page.sections.push_back(std::move(errors));
-  if (std::vector<NamedFigure> budgets = make_budget_figures(study.table); !budgets.empty()) {
-    page.sections.push_back({"Causes of error",
-                             {Paragraph{"The terms of the budget lead from theory to the measurement. They are "
-                                        "correlated, so that their heights do not add up in quadrature."},
-                              Chart{"causes", "rms of every cause", largest_cause(study), std::move(budgets)}}});
+  StudyFigureMaker const maker(study.table);
+  std::vector<std::size_t> axes = maker.varied();
+  using Make = std::optional<Figure> (StudyFigureMaker::*)(std::size_t axis) const;
+  auto const over_axes = [&](Make make) {
+    std::vector<NamedFigure> figures;
+    for (std::size_t const axis : axes) add_figure(figures, maker.title(axis), (maker.*make)(axis));
+    return figures;
+  };
+  auto const add_chart = [](ReportSection& section, char const* kind, char const* title, std::string const& alt,
+                            std::vector<NamedFigure> figures) {
+    if (!figures.empty()) section.blocks.emplace_back(Chart{kind, title, alt, std::move(figures)});
+  };
+  std::vector<NamedFigure> maps, points;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    for (std::size_t j = i + 1; j < axes.size(); ++j)
+      add_figure(maps, fmt::format("{}, {}", maker.title(axes[i]), maker.title(axes[j])),
+                 maker.make_map(axes[j], axes[i]));
   }
-  if (std::string const finding = uncertainty_finding(study); !finding.empty() && free > 0) {
-    page.data["coverage"] = coverage_measure;
-    page.sections.push_back(
-        {"Uncertainty", {Chart{"coverage", "Fraction of the errors that the estimated uncertainty covers", finding}}});
+  add_figure(points, "error and signal", maker.make_case_points("signal_px", study.main));
+  ReportSection errors{"Error over the axes", {}}, causes{"Causes of error", {}}, uncertainty{"Uncertainty", {}};
+  std::string const& extremes = page.findings.front();
+  add_chart(errors, "curves", "Error over an axis", extremes, over_axes(&StudyFigureMaker::make_errors));
+  add_chart(errors, "cells", "Error over two axes", strongest_axis(study), std::move(maps));
+  add_chart(errors, "scatter", "Error against the signal, one point per case", extremes, std::move(points));
+  add_chart(errors, "repeats", "Error that repeats have in common, and scatter between them", extremes,
+            over_axes(&StudyFigureMaker::make_repeats));
+  add_chart(uncertainty, "coverage", "Fraction of the errors that the estimated uncertainty covers",
+            uncertainty_finding(study), over_axes(&StudyFigureMaker::make_coverage));
+  if (axes.empty() && !study.table.axes.empty()) axes = {0};  // a study of one point has a budget, too
+  if (std::vector<NamedFigure> budgets = over_axes(&StudyFigureMaker::make_budget); !budgets.empty()) {
+    causes.blocks.emplace_back(
+        Paragraph{"The terms of the budget lead from theory to the measurement. They are correlated, so that their "
+                  "heights do not add up in quadrature."});
+    add_chart(causes, "causes", "rms of every cause", largest_cause(study), std::move(budgets));
   }
+  for (ReportSection* const section : {&errors, &causes, &uncertainty})
+    if (!section->blocks.empty()) page.sections.push_back(std::move(*section));
 }
 
 /// Returns study, setups, seeds and builds.
@@ -181,7 +207,6 @@ ReportPage run_report(ReportOptions const& options) {
        {other_rankings(study), largest_cause(study), strongest_axis(study), uncertainty_finding(study)}) {
     if (!finding.empty()) page.findings.push_back(finding);
   }
-  page.data = study_data(study);
   auto const manifest_entries = read_manifest(run);
   std::string const base_text = text_in_run(run, run_file::base), best_text = manifest_entries[best.index].setup;
   std::string const whose_best = fmt::format("case {}, the best", best.index);

@@ -64,7 +64,7 @@ SetupNode field_of(std::string const& file, double spacing, Vec2d centre) {
 }
 
 StudyFile study_of(CaseSetup const& loaded, SetupNode field) {
-  SetupDocument base = SetupDocument::from_text(loaded.document.written(), "twin", loaded.document.folder());
+  SetupDocument base = loaded.document.copy();
   CameraSetup const& camera = loaded.setup.camera;
   base.set({"camera", "pixels"}, setup_array({setup_integer(std::min(camera.columns, most_twin_px)),
                                               setup_integer(std::min(camera.rows, most_twin_px))}));

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "analysis/errors/error_summary.h"
 #include "render/base/error.h"
-#include "studies/case/json_text.h"
 #include "studies/figures/study_axes.h"
 #include "studies/sweep/job_array.h"
 #include "studies/sweep/ranking.h"
@@ -19,6 +16,7 @@ namespace gladstone::inline report {
 namespace {
 
 constexpr std::size_t longest_plain_table = 20;  ///< maximum number of rows of a table without a search field
+constexpr std::size_t most_positions = 24;       ///< maximum number of positions on an axis; more values are binned
 
 }  // namespace
 
@@ -128,8 +126,7 @@ std::string strongest_axis(StudyView const& study) {
   std::string text;
   for (std::size_t k = 0; k < study.table.axes.size(); ++k) {
     StudyAxis const& axis = study.table.axes[k];
-    FigureAxis const places =
-        figure_axis(axis, std::min<std::size_t>(max_positions, std::max<std::size_t>(2, axis.labels.size())));
+    FigureAxis const places = figure_axis(axis, most_positions);
     double least = std::numeric_limits<double>::infinity(), most = 0;
     std::string least_at, most_at;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -156,43 +153,6 @@ std::string uncertainty_finding(StudyView const& study) {
   return fmt::format(
       "The estimated uncertainty covers {:.0f} % of the errors in the median case ({:.0f} to {:.0f} %; ideal: 68 %).",
       100 * quantile(coverage, 0.5), 100 * quantile(coverage, 0), 100 * quantile(coverage, 1));
-}
-
-nlohmann::json study_data(StudyView const& study) {
-  nlohmann::json data{{"main", study.main}};
-  if (study.knows("signal_px")) data["second"] = "signal_px";
-  data["axes"] = data["measures"] = data["rows"] = nlohmann::json::array();
-  std::vector<FigureAxis> axes;
-  for (StudyAxis const& axis : study.table.axes) {
-    axes.push_back(figure_axis(axis, std::max<std::size_t>(2, std::min(max_positions, axis.labels.size()))));
-    nlohmann::json numbers = nlohmann::json::array();
-    for (double const position : axes.back().position) numbers.push_back(number_or_null(position));
-    data["axes"].push_back({{"key", axis.key},
-                            {"title", axes.back().title},
-                            {"numeric", axes.back().numeric},
-                            {"logarithmic", axes.back().logarithmic},
-                            {"labels", axes.back().label},
-                            {"numbers", numbers}});
-  }
-  for (StudyColumn const& column : table_columns(study.table)) {
-    if (study.table.find_measure(column.name) && study.knows(column.name)) {
-      data["measures"].push_back({{"name", column.name}, {"unit", unit_of_column(column.name)}});
-    }
-  }
-  for (StudyRow const& row : study.table.rows) {
-    nlohmann::json one{{"case", row.index},
-                       {"status", to_string(row.status)},
-                       {"v", nlohmann::json::array()},
-                       {"m", nlohmann::json::array()}};
-    for (std::size_t k = 0; k < axes.size(); ++k) one["v"].push_back(axes[k].place_of[row.value[k]]);
-    for (auto const& measure : data["measures"]) {
-      one["m"].push_back(row.status == CaseStatus::ok
-                             ? number_or_null(study.of(row, measure["name"].get_ref<std::string const&>()))
-                             : nlohmann::json(nullptr));
-    }
-    data["rows"].push_back(std::move(one));
-  }
-  return data;
 }
 
 TextTable cases_table(StudyView const& study) {

@@ -3,19 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "studies/figures/study_figures.h"
 #include "studies/report/report_page.h"
 #include "studies/sweep/study_table.h"
 
 namespace gladstone::inline report {
-
-/// Fraction of the errors against window-averaged truth that are within their estimated uncertainty.
-inline constexpr char const* coverage_measure = "uncertainty.window_truth.coverage_1";
-/// maximum number of positions on an axis of a chart; more values are binned
-inline constexpr std::size_t max_positions = 24;
 
 /// A study with the quantities of its report.
 struct StudyView {
@@ -44,13 +39,10 @@ struct StudyView {
   std::vector<double> values(std::string const& measure) const;
 };
 
-/// Returns the data of the charts: axes, measures known in some case, and the cases.
-nlohmann::json study_data(StudyView const& study);
-
 /// Formats a table of every case with its axes and main measures.
 TextTable cases_table(StudyView const& study);
 
-/// States which error the study determines, over which axes, and how many cases are finished.
+/// Describes the question of the study and its progress.
 std::string describe_question(StudyView const& study);
 
 /// Describes the cases with the smallest and largest error.

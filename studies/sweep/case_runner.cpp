@@ -59,11 +59,7 @@ bool stops_the_run(std::exception const& error) {
 
 /// Writes vectors and errors of a case into a folder that already contains its other files.
 void write_kept_results(std::string const& folder, DisplacementField const& vectors, Comparison comparison,
-                        FileOrigin origin) {
-  Hdf5Reader const truth((fs::path(folder) / case_file::truth).string());
-  for (std::string const frame : {"reference", "flow"}) {
-    origin.sources.add_known(frame, truth.attribute(frame + "_sha256"));
-  }
+                        FileOrigin const& origin) {
   write_vectors((fs::path(folder) / case_file::vectors).string(), vectors, origin);
   name_sources(comparison, compared_files(folder, ""));
   OutputFile::write_text((fs::path(folder) / case_file::errors).string(), errors_json(comparison));
@@ -196,10 +192,15 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   RecordedFrames const frames = record_frames(prepared, rendered);
   result.seconds_render = seconds_since(start);
 
+  SourceFiles kept_frames;
   if (folder) {
     rendered.seconds = result.seconds_render;
-    folder->fill(
-        [&](std::string const& place) { write_case(loaded, prepared, rendered, frames, *device_.renderer, place); });
+    folder->fill([&](std::string const& place) {
+      CaseOutcome const outcome = judge_case(loaded, prepared, rendered, frames, *device_.renderer);
+      write_case(loaded, prepared, rendered, frames, outcome, place);
+      kept_frames.add_known("reference", outcome.reference_sha256);
+      kept_frames.add_known("flow", outcome.flow_sha256);
+    });
   }
   if (parts == CaseParts::images) {
     result.pairs_only = true;
@@ -246,8 +247,9 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
 
   if (!folder) return;
   folder->fill([&](std::string const& place) {
-    write_kept_results(place, measured.field, std::move(comparison),
-                       {"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, measured.device});
+    write_kept_results(
+        place, measured.field, std::move(comparison),
+        {"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, measured.device, kept_frames});
   });
   folder->commit();
 }

@@ -165,6 +165,7 @@ std::map<std::string, char const*> const& registry_headers() {
       {"render/files/fields/readers/vtk.h", formats},
       {"render/optics/prescription_readers/readers.h", formats},
       {"studies/commands/command.h", "commands, one file each"},
+      {"studies/figures/study_drawings.h", "figures of a study, one file each"},
       {"studies/report/report.h", "reports of a study, a case and a measurement, one file each"},
       {"studies/report/report_page.h", formats},
   };

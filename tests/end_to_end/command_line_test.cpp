@@ -137,6 +137,7 @@ TEST_F(CommandLine, InfoImageTellsTheSignalToNoiseRatio) {
   EXPECT_NEAR(json["snr"].get<double>(), json["dot_height"].get<double>() / json["noise"].get<double>(), 1e-9);
   EXPECT_GT(json["snr"].get<double>(), 400);
   EXPECT_THAT(succeed({"info", "image", "case/reference.tif"}), HasSubstr("SNR "));
+  EXPECT_THAT(succeed({"info", "image", "case/reference.tif", "--csv"}), HasSubstr("\ncolumns,,columns,128,px,\n"));
   render("ideal");
   EXPECT_TRUE(json_of({"info", "image", "ideal/reference.tif"})["snr"].is_null());
   std::string uniform = "P2\n8 8\n255\n";

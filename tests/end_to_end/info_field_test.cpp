@@ -71,6 +71,9 @@ TEST_F(InfoField, DescribesAVelocityByItsComponents) {
     EXPECT_EQ(count("v.svg", "magnitude"), 1);
   }
   EXPECT_EQ(json_of({"info", "field", "v.csv", "--dataset", "u_m_s"})["maximum"], 10);
+  std::string const csv = succeed({"info", "field", "v.csv", "--csv", "--quiet"});
+  EXPECT_THAT(csv, HasSubstr("maximum.1,,largest value of v,11,m/s,\n"));
+  EXPECT_THAT(csv, HasSubstr("nodes.0,,nodes along x,2,,\n"));
   expect_refused({"info", "field", "v.csv", "--dataset", "rho"}, 2, {"rho"});
 }
 

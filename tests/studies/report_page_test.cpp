@@ -38,7 +38,7 @@ ReportPage hostile_page() {
   page.sections = {
       {hostile,
        {Paragraph{hostile}, TextList{{hostile}}, Verbatim{hostile, hostile},
-        TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true}, Chart{"curves", hostile, hostile},
+        TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true},
         FramePictures{hostile, hostile, "a", "b", "one", "two"},
         Chart{"figure", hostile, hostile, {{hostile, titled_figure(hostile)}}}, FigureFile{hostile, hostile}}}};
   page.data = {{"text", hostile}};

@@ -37,6 +37,14 @@ TEST(ResultRows, AreJsonWhoseKeysWithPointsAreObjects) {
   EXPECT_EQ(rows_json({}), nlohmann::ordered_json::object());
 }
 
+TEST(ResultRows, AreIntegersAndArraysWhereTheRowsSaySo) {
+  nlohmann::ordered_json const json =
+      rows_json({{.key = "nodes.0", .label = "nodes along x", .value = 6, .whole = true},
+                 {.key = "nodes.1", .label = "nodes along y", .value = 5, .whole = true},
+                 {.key = "spacing.0", .label = "spacing along x", .value = 1}});
+  EXPECT_EQ(json.dump(), R"({"nodes":[6,5],"spacing":[1.0]})");
+}
+
 // RFC 4180: fields with commas or quotes are quoted, and quotes are doubled.
 TEST(ResultRows, AreCsvWithEveryColumn) {
   std::string const csv = rows_csv(rows());

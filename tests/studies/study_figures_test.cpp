@@ -211,6 +211,44 @@ TEST_F(StudyFigures, TellEstimatorAndPatternApartWithRepeats) {
   }
 }
 
+// PIV has no Eq. 9: the errors are those against ray truth and the flow.
+TEST_F(StudyFigures, OfParticlesShowTheErrorAgainstTheFlow) {
+  StudyTable table = grid({numbers("lens.f_number", {4, 8, 16}), numbers("geometry.z_d_mm", {100, 200})}, 1);
+  table.measures[1] = "flow.rms_px";
+  draw(table);
+  for (char const* figure : {"error_against_lens_f_number.svg", "error_map_lens_f_number_geometry_z_d_mm.svg"}) {
+    EXPECT_THAT(text(figure), HasSubstr("measured − flow")) << figure;
+    EXPECT_THAT(text(figure), Not(HasSubstr("Eq. 9"))) << figure;
+  }
+}
+
+// Cases 0, 1 and 2 cover 50, 60 and 70 % of their errors.
+TEST(StudyFigureMaker, ComparesTheCoverageWithThatOfNormalErrors) {
+  StudyTable table = grid({numbers("lens.f_number", {4, 8, 16})}, 1);
+  EXPECT_FALSE(StudyFigureMaker(table).make_coverage(0));
+  table.measures.emplace_back(coverage_measure);
+  for (StudyRow& row : table.rows) row.measures.push_back(0.5 + 0.1 * static_cast<double>(row.index));
+  std::optional<Figure> const figure = StudyFigureMaker(table).make_coverage(0);
+  ASSERT_TRUE(figure);
+  std::vector<plot::Layer> const& layers = figure->panels.front().layers;
+  ASSERT_EQ(layers.size(), 3u);  // line, its points, and the coverage of normal errors
+  EXPECT_THAT(layers[1].columns[1], ElementsAre(0.5, 0.6, 0.7));
+  EXPECT_THAT(layers[2].columns[1], testing::Each(0.6827));
+  EXPECT_THAT(layers[2].name, HasSubstr("68 %"));
+}
+
+TEST(StudyFigureMaker, PlotsAPointForEveryFinishedCase) {
+  StudyTable table = grid({numbers("lens.f_number", {4, 8, 16})}, 1);
+  table.rows[0].status = CaseStatus::failed;
+  std::optional<Figure> const figure = StudyFigureMaker(table).make_case_points("ray_truth.rms_px", "eq9.rms_px");
+  ASSERT_TRUE(figure);
+  plot::Layer const& points = figure->panels.front().layers.front();
+  EXPECT_THAT(points.columns[0], ElementsAre(0.02, 0.03));
+  EXPECT_THAT(points.columns[1], ElementsAre(0.04, 0.06));
+  EXPECT_EQ(points.notes[1], "case 2\nf-number: 16\nray_truth.rms_px [px]: 0.03\neq9.rms_px [px]: 0.06");
+  EXPECT_FALSE(StudyFigureMaker(table).make_case_points("flow.rms_px", "eq9.rms_px"));
+}
+
 TEST_F(StudyFigures, LeaveOutWhatIsNotThere) {
   StudyTable table = grid({numbers("lens.f_number", {4, 8}), words("medium.field", {"plume"})}, 1);
   EXPECT_EQ(draw(table).size(), 4u);  // an axis with one value is omitted

@@ -75,8 +75,7 @@ void warn_of_dots_out_of_view(Scene const& scene, Warnings& warnings) {
 
 void write_dot_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
                      CaseOutcome const& outcome, FileOrigin const& origin) {
-  constexpr int map_spacing_px = 2;  // turbulent fronts are a few pixels wide
-  write_truth(path, scene, rendering, field_in_view(scene, rendering.plan, map_spacing_px),
+  write_truth(path, scene, rendering, field_in_view(scene, rendering.plan, truth_map_spacing_px),
               outcome.table_error ? &*outcome.table_error : nullptr, origin);
 }
 
