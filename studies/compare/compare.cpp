@@ -109,26 +109,24 @@ GroundTruth truth_at_points(Scene const& scene, RenderPlan const& plan, Renderer
   return renderer.render(scene, plan, virtual_dots, RenderImages::no, theory).truth;
 }
 
-std::vector<Vec2d> ideal_lens_truth(Scene const& scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point) {
+std::vector<Vec2d> ideal_lens_truth(Scene scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point) {
   if (plan.method == RenderMethod::focused_dots && scene.setup.lens.focus == Focus::target)
     return point.displacement_px;
   DotPattern virtual_dots;
   virtual_dots.half_size = scene.dots.half_size;
   virtual_dots.shape = scene.dots.shape;
   for (Vec3d const& p : point.position_m) virtual_dots.centre.push_back({p.x, p.y});
-  // Retain the sensor's position, and so the magnification; change the focal length to focus on the target.
-  Scene focused = scene;
-  LensSetup& lens = focused.setup.lens;
-  lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
-  lens.focus = Focus::target;
-  lens.f_number = lens.focal_length / scene.imaging.entrance_pupil;
-  // Use the fast renderer if it is valid, unless rays are requested or take less time.
-  bool const by_rays = plan.method != resolve_render_method(scene);
-  if (by_rays || resolve_render_method(focused) != RenderMethod::focused_dots)
-    return ideal_displacements(scene, plan, virtual_dots);
+  // On the optical axis, the ideal lens can be rendered by the fast renderer, unless rays are requested.
+  bool const focusable = scene.setup.has_closed_form_layout() && !scene.chief_rays_only();
+  bool const by_rays = scene.setup.render.method == RenderMethod::rays || plan.method != resolve_render_method(scene);
+  if (!focusable || by_rays) return ideal_displacements(scene, plan, virtual_dots);
   plan.method = RenderMethod::automatic;
-  focused.camera = build_camera(focused.setup);
-  return renderer.render(focused, plan, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
+  // Retain the sensor's position, and so the magnification; change the focal length to focus on the target.
+  scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
+  scene.setup.lens.focus = Focus::target;
+  scene.setup.lens.f_number = scene.setup.lens.focal_length / scene.imaging.entrance_pupil;
+  scene.camera = build_camera(scene.setup);
+  return renderer.render(scene, plan, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
 }
 
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,

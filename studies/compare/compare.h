@@ -80,7 +80,7 @@ GroundTruth truth_at_points(Scene const& scene, RenderPlan const& plan, Renderer
 /// at the scene's magnification, with the same rays and aperture stop [px]. The difference from the actual lens,
 /// including
 /// defocus, is the budget's aberration.
-std::vector<Vec2d> ideal_lens_truth(Scene const& scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point);
+std::vector<Vec2d> ideal_lens_truth(Scene scene, RenderPlan plan, Renderer& renderer, GroundTruth const& point);
 
 /// Vectors to be compared and their origin.
 struct MeasuredVectors {
