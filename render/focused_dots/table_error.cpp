@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -18,8 +17,6 @@ namespace {
 constexpr std::size_t place_count = 16;
 /// Rays are added until errors and detection limits are within this fraction of the tolerances.
 constexpr double sufficient_excess = 0.75;
-constexpr double worth_more_rays = 0.7;  ///< largest ratio of the errors after and before quadrupling the rays for
-                                         ///< which more rays are worthwhile
 
 /// Returns the van der Corput sequence in base 2 (1935): the bits of i mirrored at the binary point.
 double mirrored(std::size_t i) {
@@ -174,17 +171,6 @@ TableError measure_table_error(FocusedDots const& dots) {
   return error;
 }
 
-double table_seconds(FocusedDots const& dots) {
-  Scene const& scene = dots.scene();
-  DeflectionTableLayout const layout(dots, scene.dots,
-                                     DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
-  if (!layout.wanted()) return 0;
-  double const of_table = 4.0 * static_cast<double>(layout.table.fours());
-  double const measured = static_cast<double>(place_count) * LoneDot::sample_count * LoneDot::largest_sample /
-                          LoneDot::predicted_per_traced;
-  return (of_table + measured) * ray_seconds(scene, dots.plan());
-}
-
 double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
   constexpr double a_node = 0.1e-6;  // time of the table look-ups at one node of a light cone [s]
   Scene const& scene = dots.scene();
@@ -196,7 +182,11 @@ double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
   double const of_node =
       (layout.wanted() ? a_node : 0) + (theory == RenderTheory::yes ? theory_ray_seconds(scene, dots.plan()) : 0);
   double const of_dot = static_cast<double>(dots.plan().rays) * ray_seconds(scene, dots.plan()) + nodes * of_node;
-  return table_seconds(dots) + static_cast<double>(scene.source_count()) * of_dot;
+  double const of_table = 4.0 * static_cast<double>(layout.table.fours());
+  double const measured = static_cast<double>(place_count) * LoneDot::sample_count * LoneDot::largest_sample /
+                          LoneDot::predicted_per_traced;
+  double const once = layout.wanted() ? (of_table + measured) * ray_seconds(scene, dots.plan()) : 0;
+  return once + static_cast<double>(scene.source_count()) * of_dot;
 }
 
 RenderPlan plan_rays_by_table(FocusedDots const& dots) {
@@ -205,20 +195,14 @@ RenderPlan plan_rays_by_table(FocusedDots const& dots) {
     plan.rays = *given;
     return plan;
   }
+  auto const measure = [&] { return measure_table_error(build_focused_dots(dots.scene(), plan).value()); };
   plan.rays = initial_table_rays;
-  double last = std::numeric_limits<double>::infinity();
-  while (true) {
-    TableError const error = measure_table_error(build_focused_dots(dots.scene(), plan).value());
-    plan.table_error = error;
-    if (error.excess() <= 1) return plan;
-    if (plan.fineness == 1) {
-      plan.fineness = 2;
-    } else {  // More rays do not reduce the error of the table itself.
-      if (plan.rays >= 512 || error.excess() > worth_more_rays * last) return plan;
-      last = error.excess();
-      plan.rays *= 4;
-    }
-  }
+  plan.table_error = measure();
+  if (plan.table_error->excess() <= 1) return plan;
+  plan.rays = refined_table_rays;
+  plan.fineness = 2;
+  plan.table_error = measure();
+  return plan;
 }
 
 }  // namespace gladstone::inline focused_dots

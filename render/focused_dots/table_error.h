@@ -16,25 +16,20 @@ namespace gladstone::inline focused_dots {
 /// target, of adjacent squares. Positions that the table does not cover are ignored.
 TableError measure_table_error(FocusedDots const& dots);
 
-/// Number of rays per dot with which plan_rays_by_table() starts.
-inline constexpr std::uint64_t initial_table_rays = 32;
+/// Number of rays per dot that plan_rays_by_table() chooses, and that for a refined table.
+inline constexpr std::uint64_t initial_table_rays = 32, refined_table_rays = 512;
 
 /// Completes a plan that has a step with the number of rays per dot that correct the table, and the fineness of table
 /// and rules.
-/// A number given in the setup is used unchanged. Otherwise it starts at 32 rays. If the errors exceed 1e-3 px
-/// rms in the truth or half a grey level in images, table and rules are refined by a factor of two; then 128 and 512
-/// rays are tried, as long as each step reduces the error by at least 30 %. Dots with large scatter use up to 256 rays
-/// (DotModel). The plan contains the remaining error of the table.
+/// A number given in the setup is used unchanged. Otherwise it is 32 rays. If the errors exceed 1e-3 px rms in the
+/// truth or half a grey level in images, table and rules are refined by a factor of two, with 512 rays. Dots with large
+/// scatter use up to 256 rays (DotModel). The plan contains the remaining error of the table.
 RenderPlan plan_rays_by_table(FocusedDots const& dots);
 
-/// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].
-/// The table has the same number of rays for a hundred dots as for thousands.
-double table_seconds(FocusedDots const& dots);
-
-/// Estimates the processor time for rendering a scene's dots [s]: table_seconds(), the rays of every dot, and for every
-/// node of its light cone the look-ups in the table and, if requested, the samples of small-angle theory (Eq. 9).
-/// No clock is read: nodes and samples are counted and multiplied by times measured on the processor of
-/// docs/benchmarks.md.
+/// Estimates the processor time for rendering a scene's dots [s]: the deflection table and the measurement of its
+/// error, the rays of every dot, and for every node of its light cone the look-ups in the table and, if requested, the
+/// samples of small-angle theory (Eq. 9). No clock is read: nodes and samples are counted and multiplied by times
+/// measured on the processor of docs/benchmarks.md.
 double dots_seconds(FocusedDots const& dots, RenderTheory theory);
 
 }  // namespace gladstone::inline focused_dots

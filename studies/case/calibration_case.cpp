@@ -24,13 +24,9 @@
 namespace gladstone::inline cases {
 namespace {
 
-constexpr std::uint64_t least_rays = 1024, most_rays = 65536;  // limits of the number of rays per dot chosen by "auto"
-// rms error of the dot positions at which "auto" stops increasing the number of rays
-constexpr double place_tolerance_px = 1e-3;
+constexpr double place_tolerance_px = 1e-3;  // rms error of the dot positions beyond which a warning is issued
 constexpr std::size_t dots_traced_again = 64;
 constexpr int dots_for_a_fit = 12;  // minimum number of dots per plane for a homography and its check
-
-Scene plane_scene(Setup const& setup, double z) { return build_scene(plane_setup(setup, z)); }
 
 /// Selects up to `dots_traced_again` dots, evenly distributed over the pattern.
 DotPattern some_dots(Scene const& scene) {
@@ -48,7 +44,7 @@ DotPositionError place_error(Scene const& scene, RenderPlan const& plan, Rendere
   auto const places = [&](std::uint64_t repeat) {
     Scene other = scene;
     other.setup.render.seed = repeat_seed(scene.setup.render.seed, repeat);
-    return renderer.render(other, plan, some, RenderImages::no, RenderTheory::no).truth.reference_px;
+    return renderer.render(other, plan, some, RenderImages::yes, RenderTheory::no).truth.reference_px;
   };
   std::vector<Vec2d> const one = places(1), two = places(2);
   double squares = 0;
@@ -61,25 +57,6 @@ DotPositionError place_error(Scene const& scene, RenderPlan const& plan, Rendere
   }
   error.rms_px = std::sqrt(squares / (2.0 * static_cast<double>(error.dots)));
   return error;
-}
-
-/// Returns the largest number of rays that the images of some dots require.
-std::uint64_t rays_of_images(Scene const& scene, Renderer& renderer) {
-  Rendering const rendering =
-      renderer.render(scene, plan_rendering(scene), some_dots(scene), RenderImages::yes, RenderTheory::no);
-  std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
-  return rays.empty() ? 1 : static_cast<std::uint64_t>(*std::max_element(rays.begin(), rays.end()));
-}
-
-/// Determines the rays per dot for all planes: the number required by the plane farthest out of focus.
-std::uint64_t rays_for(Setup const& setup, Renderer& renderer) {
-  if (setup.render.rays_per_dot) return *setup.render.rays_per_dot;
-  auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  Scene const scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
-  RenderPlan plan = plan_step(scene);
-  plan.rays = std::max(least_rays, rays_of_images(scene, renderer));
-  while (plan.rays < most_rays && place_error(scene, plan, renderer).rms_px > place_tolerance_px) plan.rays *= 2;
-  return plan.rays;
 }
 
 /// Warns if the position error of a plane exceeds the tolerance.
@@ -111,14 +88,12 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
   Setup const& setup = loaded.setup;
   RenderedCalibration rendered;
   warn(rendered.warnings, loaded.warnings);
-  rendered.rays = rays_for(setup, renderer);
   double brightest = 0;
   for (double const z : setup.planes) {
     RenderedPlane plane;
     plane.z = z;
-    plane.scene = plane_scene(setup, z);
-    RenderPlan plan = plan_step(plane.scene);
-    plan.rays = rendered.rays;
+    plane.scene = build_scene(plane_setup(setup, z));
+    RenderPlan const plan = plan_rendering(plane.scene);
     auto const in_view = std::count_if(plane.scene.dots.centre.begin(), plane.scene.dots.centre.end(),
                                        [&](Vec2d centre) { return plane.scene.in_view(centre); });
     if (in_view < dots_for_a_fit) {
@@ -132,6 +107,10 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
                    fmt::format(" of the plane Z = {:.6g} mm", z / unit::millimetre));
     plane.light = std::move(traced.light.reference);
     plane.truth = std::move(traced.truth);
+    for (std::int64_t const rays : plane.truth.rays_planned) {
+      plane.rays = std::max(plane.rays, static_cast<std::uint64_t>(rays));
+    }
+    rendered.rays = std::max(rendered.rays, plane.rays);
     plane.statuses = traced.statuses;
     plane.place_error = place_error(plane.scene, plan, renderer);
     rendered.device = traced.device.empty() ? renderer.device() : traced.device;
@@ -142,9 +121,13 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
   CameraSetup const& camera = setup.camera;
   rendered.exposure_e = camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, brightest);
   SetupTable root = loaded.document.root();
-  root.table("render").resolve("rays_per_dot", static_cast<long long>(rendered.rays));
   root.table("render").resolve("method", std::string(to_string(RenderMethod::rays)));
-  root.table("camera").resolve("exposure", rendered.exposure_e);
+  if (setup.render.rays_per_dot || camera.exposure_e) {
+    root.table("camera").resolve("exposure", rendered.exposure_e);
+  } else {  // If the rays are chosen again, they are chosen for the same exposure, so "auto" remains.
+    root.table("camera").resolve("exposure", std::string("auto"));
+  }
+  if (!setup.render.rays_per_dot) root.table("render").resolve("rays_per_dot", std::string("auto"));
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
 }
@@ -185,7 +168,7 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
                       {"dots", plane.truth.size()},
                       {"dots_unseen", unseen},
                       {"saturated", frame.saturated},
-                      {"rays_planned", rendered.rays},
+                      {"rays_planned", plane.rays},
                       {"place_error_px", place_error_json(plane.place_error)},
                       {"magnification", plane.scene.imaging.magnification},
                       {"sha256", pixel_sha256(frame.image)}});

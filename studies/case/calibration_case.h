@@ -25,6 +25,7 @@ struct RenderedPlane {
   Image<double> light;  ///< light per pixel, in fully lit pixels on the axis
   GroundTruth truth;
   StatusCounts statuses{};
+  std::uint64_t rays = 0;  ///< largest number of rays of a dot
   DotPositionError place_error;
 };
 
@@ -33,7 +34,7 @@ struct RenderedCalibration {
   std::vector<RenderedPlane> planes;
   Warnings warnings;
   double exposure_e = 0;   ///< electrons in a fully lit pixel, equal for all planes [e]
-  std::uint64_t rays = 0;  ///< rays per dot
+  std::uint64_t rays = 0;  ///< largest number of rays of a dot, of all planes
   std::string device;
   double seconds = 0;
 };

@@ -102,6 +102,21 @@ TEST_F(Calibrations, ReportPositionErrorDueToRays) {
   EXPECT_THAT(warnings_in(few), testing::Contains("low_accuracy at render.rays_per_dot"));
 }
 
+// With "auto", each dot takes the rays that its image requires for half a grey level. They suffice for positions to
+// 1e-3 px, and the written setup renders the same images.
+TEST_F(Calibrations, AutoTakesTheRaysThatImagesRequire) {
+  std::string const given = wide;
+  write("setup.toml", given.substr(0, given.find("[render]")));
+  auto const json = json_of({"render", "setup.toml", "-o", "case", "--quiet"});
+  for (auto const& plane : json["planes"]) {
+    EXPECT_LT(plane["place_error_px"]["rms"], 1e-3) << plane;
+    EXPECT_LE(plane["rays_planned"], json["rays_per_dot"]) << plane;
+  }
+  EXPECT_THAT(warnings_in(json), testing::Not(testing::Contains("low_accuracy at render.rays_per_dot")));
+  auto const again = json_of({"render", "case/setup.toml", "-o", "again", "--quiet"});
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(again["planes"][i]["sha256"], json["planes"][i]["sha256"]) << i;
+}
+
 // A double Gauss lens with a grid of +-1.2 m at a distance of 1 m: its mounts vignette dots far from the axis
 // completely.
 TEST_F(Calibrations, WarnOfDotsThatTheLensVignettes) {

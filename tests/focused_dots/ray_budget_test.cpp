@@ -109,7 +109,7 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   EXPECT_EQ(usual.fineness, 1);
   RenderPlan const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.fineness, 2);
-  EXPECT_LT(plan.rays, 512u);  // the given number of the scene above, whose table is not finer
+  EXPECT_EQ(plan.rays, 512u);  // as in the scene above, whose table is not finer
   TableError const error = plan.table_error.value();
   EXPECT_LT(error.image_levels, usual.image_levels / 2) << "of " << usual.image_levels;
   EXPECT_GT(error.image_levels, 0.5);  // half a level is the goal
