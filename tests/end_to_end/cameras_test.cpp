@@ -153,7 +153,7 @@ TEST_F(Cameras, HaveIndependentNoise) {
 }
 
 TEST_F(Cameras, LookThroughTheWindowsThatNameThem) {
-  std::string const text = with(stereo, "[target]", "[target]\nextent_mm = [100, 40]");
+  std::string const text = with(stereo, "[target]", "[target]\nextent_mm = [100, 10]");
   write("setup.toml", text + "[[window]]\nposition_mm = [0, 0, 100]\nthickness_mm = 20\ncameras = [\"right\"]\n");
   render("case");
   EXPECT_EQ(read("case/left/setup.toml").find("[[window]]"), std::string::npos);

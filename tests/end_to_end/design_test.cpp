@@ -126,7 +126,7 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   auto const sheet = json_of({"design", "out.toml"})["sheet"];
   EXPECT_NEAR(sheet["resolution_mm"], predicted["resolution_mm"], 1e-9);
   EXPECT_NEAR(sheet["gradient_min_kg_m4"], predicted["gradient_min_kg_m4"], 1e-9);
-  render("case", {"--set", "render.rays_per_dot=4"}, "out.toml");
+  render("case", {"--set", "render.rays_per_dot=4", "--set", "render.method=rays"}, "out.toml");
   EXPECT_THAT(names("case"), testing::Contains("flow.tif"));
 }
 

@@ -257,7 +257,7 @@ TEST_F(Piv, SeesParticlesBehindAShockWhereElsingaSaysTheyAre) {
     std::string const front =
         with(with(with(with(piv_setup, "[12.0, 12.0, 1.5]", "[12.0, 12.0, 20.0]"), "thickness_mm = 1.0",
                        "thickness_mm = 20.0\nprofile = \"top_hat\""),
-                  "per_pixel = 0.05", "per_pixel = 0.02"),
+                  "per_pixel = 0.05", "per_pixel = 0.01"),
              "[particles]",
              "[medium]\nthickness_mm = 60.0\nambient_density_kg_m3 = 1.862068966\n[medium.field]\nkind = "
              "\"normal_shock\"\nmach = 1.5\nupstream_density_kg_m3 = 1.0\nshock_thickness_mm = 0.2\ntilt_deg = " +

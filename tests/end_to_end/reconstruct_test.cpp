@@ -38,6 +38,7 @@ radius_mm = 2.0
 dots_per_32px_window = 25.0
 
 [render]
+method = "rays"
 rays_per_dot = 64
 
 [correlate]

@@ -212,6 +212,9 @@ z_d_mm = { value = 250.0, sigma = 2.5 }
 [medium.field]
 kind = "uniform_gradient"
 gradient_kg_m4 = [40.0, 0.0, 0.0]
+[render]
+method = "rays"
+rays_per_dot = 256
 [correlate]
 window_px = [32, 16]
 )";
@@ -222,7 +225,7 @@ window_px = [32, 16]
     std::filesystem::copy_file(in(std::string("case/") + name), in(std::string("measured/") + name));
   }
   std::string without_field = setup;
-  without_field.erase(without_field.find("[medium.field]"), setup.find("[correlate]") - setup.find("[medium.field]"));
+  without_field.erase(without_field.find("[medium.field]"), setup.find("[render]") - setup.find("[medium.field]"));
   write("measured/setup.toml", without_field);
   succeed({"correlate", "measured/reference.tif", "measured/flow.tif", "-o", "measured/vectors.h5", "--config",
            "measured/setup.toml", "--set", "correlate.uncertainty=none", "--quiet"});
@@ -399,6 +402,9 @@ z_d_mm = 250.0
 [medium.field]
 kind = "uniform_gradient"
 gradient_kg_m4 = [40.0, 0.0, 0.0]
+[render]
+method = "rays"
+rays_per_dot = 64
 [correlate]
 window_px = [32, 16]
 )";

@@ -253,7 +253,7 @@ TEST_F(Stereo, CalibrationsThroughAWindowAccountForIt) {
   std::string const cameras = text.substr(0, text.find("[particles]"));
   write("plates.toml", with(cameras, "\"piv\"", "\"calibration\"") + window +
                            "[calibration]\nplanes_mm = [-2.0, 0.0, 2.0]\nspacing_mm = 0.8\ndot_diameter_mm = 0.4\n"
-                           "extent_mm = [16.0, 12.0]\n[render]\nrays_per_dot = 512\n");
+                           "extent_mm = [16.0, 12.0]\n[render]\nrays_per_dot = 128\n");
   succeed({"render", "plates.toml", "-o", "plates", "--quiet"});
   for (char const* camera : {"plates/left", "plates/right"}) succeed({"calibrate", camera, "--no-figures", "--quiet"});
   auto const result = combine({"--calibration", "plates/left/calibration.h5", "plates/right/calibration.h5"});
@@ -324,7 +324,7 @@ TEST_F(Stereo, RefusesWhatItCannotCombine) {
   refused({"case/left", "other/right", "-o", "uvw.h5"}, {"other particles"});
   succeed({"init", "bos", "-o", "bos.toml"});
   succeed({"render", "bos.toml", "-o", "bos", "--set", "camera.pixels=[128, 128]", "--set", "render.rays_per_dot=4",
-           "--quiet"});
+           "--set", "render.method=rays", "--quiet"});
   succeed({"correlate", "bos", "--quiet"});
   refused({"case/left", "bos", "-o", "uvw.h5"}, {"bos", "PIV"});
 }

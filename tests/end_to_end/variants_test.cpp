@@ -34,8 +34,7 @@ TEST_F(Variants, ChiefRaysOfAPinholeMoveByEq9InAUniformGradient) {
 
 TEST_F(Variants, PointsOfATableStandWhereItSays) {
   write("dots.csv", "x_mm,y_mm\n0,0\n1.5,-0.5\r\n");
-  write("points.toml",
-        with(automatic_setup(), "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
   render("case", {}, "points.toml");
   auto const position = dataset("/dots/position_m"), reference = dataset("/dots/reference_px");
   ASSERT_EQ(position.size(), 6u);
@@ -50,8 +49,7 @@ TEST_F(Variants, PointsOfATableStandWhereItSays) {
 
 TEST_F(Variants, DotsOutsideTheViewAreWarnedOf) {
   write("dots.csv", "x_mm,y_mm\n500,0\n0,-400\n");
-  write("points.toml",
-        with(automatic_setup(), "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
   auto const json = json_of({"render", "points.toml", "-o", "case"});
   EXPECT_THAT(warnings_in(json), testing::Contains("out_of_view at target"));
   EXPECT_EQ(nlohmann::json::parse(read("case/summary.json"))["warning_records"], json["warning_records"]);
@@ -63,7 +61,7 @@ TEST_F(Variants, DotsOutsideTheViewAreWarnedOf) {
 
 TEST_F(Variants, RegularDotsFormALattice) {
   for (std::string const key : {"target.arrangement=regular", "target.kind=grid"}) {
-    render("case", {"--set", key});
+    render("case", {"--set", key, "--set", "render.method=rays"});
     auto const position = dataset("/dots/position_m");
     // equal steps along the first row
     double const pitch = position[3] - position[0];
@@ -113,7 +111,7 @@ TEST_F(Variants, AGivenExposureIsThatOfAFullyLitPixelAndAutoIsThatOfTheBrightest
     EXPECT_NEAR(rendered({"--set", "camera.exposure=20000", "--set", "target.polarity=dark"}), white, 6);
     EXPECT_EQ(nlohmann::json::parse(read("case/summary.json"))["exposure"], 20000);
     peak[i] = rendered({"--set", "camera.exposure=20000"});
-    rendered({});
+    rendered({"--set", "render.method=rays"});
     EXPECT_NEAR(std::max(largest(image("case/reference.tif")), largest(image("case/flow.tif"))), 0.9 * 65535, 0.51);
   }
   // 3 px discs with Gaussian PSFs of sigma 0.14 and 0.55 px: 1 - exp(-r^2 / 2 sigma^2) at the centre is 1 and 0.976,
@@ -279,9 +277,9 @@ TEST_F(Variants, OddButPossibleSetupsRender) {
         {"target.dots_per_32px_window=0.1"},
         {"target.dot_diameter_px=0"},
         {"medium.thickness_mm=1e-9"},
-        {"correlate.overlap=0.95"},
+        {"correlate.overlap=0.95", "render.method=rays"},
         {"camera.bit_depth=1"},
-        {"camera.exposure=1e30", "camera.noise.shot_noise=true"},
+        {"camera.exposure=1e30", "camera.noise.shot_noise=true", "render.method=rays"},
         {"lens.focus=medium"},
         {"lens.psf=airy"},
         {"lens.psf=none"},
@@ -368,7 +366,8 @@ rays_per_dot = 64
 }
 
 TEST_F(Variants, ReportsDotsHiddenByExcessiveGradients) {
-  auto const json = json_of({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[5e4, 0, 0]"});
+  auto const json = json_of({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[5e4, 0, 0]",
+                             "--set", "render.method=rays"});
   EXPECT_THAT(warnings_in(json),
               testing::IsSupersetOf({"out_of_view at target", "implausible at medium.field.gradient_kg_m4"}));
   EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("32 rays"));

@@ -58,6 +58,8 @@ class AgreementOfTurbulence : public testing::TestWithParam<PlaneCase> {};
 // The theory has no free parameter and uses the same plane. The remaining differences: the dots are a sample (three
 // standard errors of another plane of the same kind), and at the sharpest fronts the stop transmits other rays in the
 // measurement image than in the reference image, a few hundredths of the rms of the rays (cone against rays, below).
+// 16 rays per dot have at most four times the error of 64, 4e-3 of the amplitude, and change a correlation by its
+// square.
 TEST_P(AgreementOfTurbulence, IsWhatTheSpectrumPredicts) {
   auto const [file, nodes] = GetParam();
   gladstone::Setup const setup = table1(file, 16);
