@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import subprocess
+from contextlib import contextmanager
 
 import pytest
 
@@ -73,6 +74,22 @@ def written_case(program, bos, tmp_path_factory):
     program("correlate", place)
     program("compare", place, "--no-figures")
     return place
+
+
+@pytest.fixture
+def refused():
+    """Expects an exception of gladstone by its "code at place", with the name of a file without its folders, and names
+    or numbers that its text contains."""
+
+    @contextmanager
+    def expect(kind, error, *values):
+        with pytest.raises(kind) as caught:
+            yield caught
+        assert f"{caught.value.code} at {os.path.basename(caught.value.place)}" == error
+        for value in values:
+            assert value in caught.value.text
+
+    return expect
 
 
 @pytest.fixture

@@ -96,7 +96,7 @@ def test_mistakes_are_reported(ideal, piv):
     with pytest.raises(gs.DataError) as raised:
         gs.RenderedBatches(piv, 2, device="cpu")
     assert raised.value.code == "unsupported"
-    with pytest.raises(ValueError, match="one per pair"):
+    with pytest.raises(ValueError, match="2 dictionaries for 3 pairs"):
         gs.RenderedBatches(ideal, 3, by_strength([0.1, 0.2]), device="cpu")[0]
     sizes = lambda k, random: [{"camera.pixels": [size, 48]} for size in (64, 32)]  # noqa: E731
     with pytest.raises(gs.DataError) as raised:

@@ -24,13 +24,13 @@ def test_templates_equal_those_of_the_program(program, kind, all_keys):
     assert gs.init(kind, all_keys=all_keys) == program("init", kind, *(["--all"] if all_keys else []))["text"]
 
 
-def test_template_is_written_once(tmp_path):
+def test_template_is_written_once(tmp_path, refused):
     path = tmp_path / "mine.toml"
     text = gs.init("bos", path)
     assert path.read_text() == text and "mine.toml" in text
-    with pytest.raises(gs.OutputError, match="exists already"):
+    with refused(gs.OutputError, "output at mine.toml"):
         gs.init("bos", path)
-    with pytest.raises(gs.DataError, match="kind"):
+    with refused(gs.DataError, "arguments at init", "boss"):
         gs.init("boss")
 
 
@@ -104,7 +104,7 @@ def test_ensemble_equals_that_of_the_program(bos, program, tmp_path):
     program("correlate", "--ensemble", *images, "-o", tmp_path / "theirs.h5", *sets)
     theirs = gs.Field.load(tmp_path / "theirs.h5")
     assert np.array_equal(field.u, theirs.u, equal_nan=True) and np.array_equal(field.status, theirs.status)
-    with pytest.raises(ValueError, match="pair"):
+    with pytest.raises(ValueError, match="3 images"):
         gs.correlate_ensemble(images[:3])
 
 
@@ -117,8 +117,8 @@ def test_oracles_equal_those_of_the_program(program):
     assert all(one.passed for one in mine)
 
 
-def test_views_need_a_plenoptic_camera(written_case, tmp_path):
-    with pytest.raises(gs.DataError, match="lenslets|plenoptic"):
+def test_views_need_a_plenoptic_camera(written_case, tmp_path, refused):
+    with refused(gs.DataError, "unsupported at setup.toml", "[camera.lenslets]"):
         gs.views(written_case, tmp_path / "views")
 
 

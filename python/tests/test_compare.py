@@ -68,7 +68,7 @@ def test_tables_of_vectors_are_compared(case, field):
     assert case.compare(columns, device="cpu").rms_px == expected
     table = pandas.DataFrame({name + "_px": values for name, values in columns.items()})
     assert case.compare(table, device="cpu").rms_px == expected
-    with pytest.raises(ValueError, match="expected columns x, y, u and v"):
+    with pytest.raises(ValueError, match="x_px"):
         case.compare(table[["x_px"]])
 
 
@@ -81,9 +81,9 @@ def test_fields_and_loaded_cases_survive_pickle(case, field, tmp_path):
     assert case.compare(again, device="cpu").errors == case.compare(field, device="cpu").errors
     arrays = gs.Field(field.x, field.y, field.u, field.v)
     assert (pickle.loads(pickle.dumps(arrays)).u == arrays.u).all()
-    with pytest.raises(TypeError, match="save it"):
+    with pytest.raises(TypeError, match="Case.load"):
         pickle.dumps(case)
-    with pytest.raises(TypeError, match="cannot be pickled"):
+    with pytest.raises(TypeError, match="Report"):
         pickle.dumps(case.compare(field, device="cpu"))
     case.save(tmp_path / "case")
     loaded = pickle.loads(pickle.dumps(gs.Case.load(tmp_path / "case")))
@@ -95,12 +95,12 @@ def test_objects_describe_themselves(case, bos):
     assert repr(gs.Study(bos, {"lens.f_number": [8]})) == "<gladstone.Study of lens.f_number>"
 
 
-def test_frames_of_another_case_are_noticed(case, field, bos, codes):
+def test_frames_of_another_case_are_noticed(case, field, bos, codes, refused):
     other = bos.replace({"target.seed": 99}).render(device="cpu")
     with pytest.warns(gs.GladstoneWarning) as caught:
         other.compare(field, device="cpu")
     assert any(one.startswith("inconsistent") for one in codes(caught))
-    with pytest.raises(gs.DataError, match="opposite sign"):
+    with refused(gs.DataError, "inconsistent at field"):
         case.compare(gs.correlate(case.b, case.a, window=[32, 16], overlap=0.5, device="cpu"))
 
 

@@ -126,7 +126,7 @@ def test_images_of_cupy(cupy, field, case):
 
 # Whatever their type and memory layout, images of a GPU give the vectors of the same images in host memory.
 @pytest.mark.parametrize("type", ["uint16", "int32", "uint64", "float32", "float64"])
-def test_images_stay_on_the_gpu(cupy, case, type):
+def test_images_stay_on_the_gpu(cupy, case, codes, type):
     a, b = case.a.astype(type), case.b.astype(type)
     expected = gs.correlate(a, b, device="cuda", **SETTINGS)
     wide = cupy.zeros((192, 96), type)
@@ -136,22 +136,23 @@ def test_images_stay_on_the_gpu(cupy, case, type):
         measured = gs.correlate(wide[1::2], on_gpu, device="cuda", **SETTINGS)
     assert measured.device == "cuda"
     assert same(measured.u, expected.u) and same(measured.v, expected.v) and same(measured.status, expected.status)
-    with pytest.warns(gs.GladstoneWarning, match="may not have been measured"):
+    with pytest.warns(gs.GladstoneWarning) as caught:
         case.compare(measured)
+    assert any(one.startswith("inconsistent") for one in codes(caught))
 
 
-def test_images_of_a_gpu_are_checked_like_others(cupy, case):
+def test_images_of_a_gpu_are_checked_like_others(cupy, case, refused):
     a, b = cupy.asarray(case.a.astype(float)), cupy.asarray(case.b.astype(float))
     a[:, :8] = cupy.nan
-    with pytest.warns(gs.GladstoneWarning, match=f"a: {8 * 96} of {96 * 96} pixels are nan"):
+    with pytest.warns(gs.GladstoneWarning, match=f"a: {8 * 96} of {96 * 96} "):
         gs.correlate(a, b, **SETTINGS)
-    with pytest.raises(gs.DataError, match="both frames must have one size"):
+    with refused(gs.DataError, "wrong_shape at b"):
         gs.correlate(a, b[:64], **SETTINGS)
-    with pytest.raises(gs.DataError, match="all of its"):
+    with refused(gs.DataError, "invalid_value at b"):
         gs.correlate(a, cupy.full_like(b, cupy.nan), **SETTINGS)
-    with pytest.raises(ValueError, match="grey image"):
+    with pytest.raises(ValueError, match="a has|b has"):
         gs.correlate(a, b[None], **SETTINGS)
-    with pytest.raises(gs.DataError, match="neither an integer"):
+    with refused(gs.DataError, "wrong_type at a", "float16"):
         gs.correlate(a.astype("float16"), b.astype("float16"), **SETTINGS)
     # settings that the GPU does not support, and arrays in different memories
     mixed = gs.correlate(a, case.b, **SETTINGS)
@@ -196,12 +197,12 @@ def test_settings_are_checked(case):
     assert {problem.key for problem in caught.value.problems} == {"window", "method"}
 
 
-def test_images_are_checked(case):
-    with pytest.raises(gs.DataError, match="size"):
+def test_images_are_checked(case, refused):
+    with refused(gs.DataError, "wrong_shape at b"):
         gs.correlate(case.a, case.b[:50], window=32)
-    with pytest.raises(gs.DataError, match="window"):
+    with refused(gs.DataError, "wrong_shape at a", "window"):
         gs.correlate(case.a[:20, :20], case.b[:20, :20], window=32)
-    with pytest.raises(gs.DataError, match="type"):
+    with refused(gs.DataError, "wrong_type at a"):
         gs.correlate(case.a.astype(complex), case.b.astype(complex), window=32)
 
 

@@ -71,22 +71,22 @@ def test_references_and_methods(bos, field):
     assert flow.summary["axis"]["lambda"] > 0
 
 
-def test_parts_of_an_axisymmetric_flow(bos, field):
+def test_parts_of_an_axisymmetric_flow(bos, field, refused):
     whole = gs.reconstruct(field, bos, axis="x=0", device="cpu")
     right = np.where(field.x > 47, field.u, np.nan)
     half = gs.reconstruct((field.x, field.y, right, field.v), bos, axis="x=0", device="cpu")
     assert half.summary["axis"]["asymmetry"] is None
     middle = np.nanmin(whole.density)
     assert np.nanmin(half.density) == pytest.approx(middle, abs=0.1 * (1.225 - middle))
-    with pytest.raises(gs.DataError, match="axis"):
+    with refused(gs.DataError, "inconsistent at axis"):
         gs.reconstruct((field.x, field.y, right, field.v), bos, axis="vertical", device="cpu")
-    with pytest.raises(gs.SetupError, match="outside the image"):
+    with refused(gs.SetupError, "invalid_value at axis", "50 mm"):
         gs.reconstruct(field, bos, axis="x=50", device="cpu")
 
 
-def test_masks_and_references(bos, field, codes):
+def test_masks_and_references(bos, field, codes, refused):
     masked = np.where(field.x < 30, np.nan, field.u)
-    with pytest.raises(gs.DataError, match="masked or invalid"):
+    with refused(gs.DataError, "undetermined at reference"):
         gs.reconstruct((field.x, field.y, masked, field.v), bos, reference="left", device="cpu")
     divided = np.where(np.abs(field.x - 47.5) < 6, np.nan, field.u)
     with pytest.warns(gs.GladstoneWarning) as caught:
@@ -99,10 +99,10 @@ def test_masks_and_references(bos, field, codes):
     assert "unsuitable at reference" in codes(caught)
 
 
-def test_problems_are_reported(bos, field, codes):
-    with pytest.raises(gs.SetupError, match="reference"):
+def test_problems_are_reported(bos, field, codes, refused):
+    with refused(gs.SetupError, "invalid_value at reference"):
         gs.reconstruct(field, bos, device="cpu")
-    with pytest.raises(gs.SetupError, match="middle"):
+    with refused(gs.SetupError, "invalid_value at reference", "middle"):
         gs.reconstruct(field, bos, reference="middle", device="cpu")
     with pytest.raises(ValueError, match="method"):
         gs.reconstruct(field, bos, reference="left", method="other")

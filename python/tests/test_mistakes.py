@@ -9,41 +9,40 @@ import gladstone as gs
 
 
 def test_images_are_arrays(case):
-    with pytest.raises(TypeError, match="read files first"):
+    with pytest.raises(TypeError, match="a is 'a.tif'.*tifffile.imread"):
         gs.correlate("a.tif", "b.tif")
     with pytest.raises(TypeError, match="b is None"):
         gs.correlate(case.a, None)
     colours = np.stack([case.a] * 3, axis=-1)
-    with pytest.raises(ValueError, match="grey image"):
+    with pytest.raises(ValueError, match=r"^a .*\(96, 96, 3\)"):
         gs.correlate(colours, colours)
 
 
 @pytest.mark.parametrize("image", [np.zeros((8, 8), object), np.zeros((8, 8), complex), np.zeros((8, 8), "m8[s]")])
-def test_pixels_are_numbers(case, image):
-    with pytest.raises(gs.DataError, match="integers or of 32- or 64-bit floats") as caught:
+def test_pixels_are_numbers(case, image, refused):
+    with refused(gs.DataError, "wrong_type at a", "ndarray", str(image.dtype)):
         gs.correlate(image, image)
-    assert caught.value.code == "wrong_type"
-    with pytest.raises(gs.DataError, match="type Case"):
+    with refused(gs.DataError, "wrong_type at a", "Case"):
         gs.correlate(case, case)
 
 
 def test_masks_have_the_size_of_the_images(case):
-    with pytest.raises(ValueError, match="mask has the shape"):
+    with pytest.raises(ValueError, match=r"^mask .*\(3, 4\)"):
         gs.correlate(case.a, case.b, mask=np.zeros((3, 4), bool))
 
 
 def test_files_are_not_arrays(case):
     for call in (gs.correlate_ensemble, gs.correlate_sequence):
-        with pytest.raises(TypeError, match="write arrays to files"):
+        with pytest.raises(TypeError, match="ndarray"):
             call([case.a, case.b])
 
 
 def test_setups_are_text(bos):
-    with pytest.raises(TypeError, match="use Setup.from_dict"):
+    with pytest.raises(TypeError, match="Setup.from_dict"):
         gs.Setup(bos.to_dict())
-    with pytest.raises(TypeError, match="use Setup.from_file"):
+    with pytest.raises(TypeError, match="Setup.from_file"):
         gs.Setup(pathlib.Path("table1.toml"))
-    with pytest.raises(ValueError, match=r"use gladstone.Setup\(text\)"):
+    with pytest.raises(ValueError, match=r"gladstone.Setup\(text\)"):
         gs.trace(gs.init("bos"), [0, 0, 0], [0, 0, 1])
 
 
@@ -57,27 +56,27 @@ def test_temporary_files_are_not_named(bos, tmp_path):
     assert caught.value.file == "setup.toml" and "/" not in str(caught.value).split(":")[0]
     with pytest.raises(gs.SetupError) as caught:
         gs.render_sequence(bos, tmp_path / "sequence")
-    assert caught.value.file is None and caught.value.text.startswith("has no table [sequence]")
+    assert (caught.value.file, caught.value.code, caught.value.key) == (None, "missing_key", "sequence")
 
 
 def test_a_setup_has_no_images(bos):
-    with pytest.raises(ValueError, match="give images, one for each plane"):
+    with pytest.raises(ValueError, match="images"):
         gs.calibrate(bos)
 
 
-def test_reports_have_known_endings(case, tmp_path):
+def test_reports_have_known_endings(case, tmp_path, refused):
     for call in (lambda path: gs.report(tmp_path, path), case.compare(case.correlate(device="cpu")).to_html):
-        with pytest.raises(gs.OutputError, match=".html or .md"):
+        with refused(gs.OutputError, "output at report.xyz", ".html", ".md"):
             call(tmp_path / "report.xyz")
 
 
-def test_places_that_are_none_are_data_errors():
-    with pytest.raises(gs.DataError, match="cannot be accessed"):
+def test_places_that_are_none_are_data_errors(refused):
+    with refused(gs.DataError, 'unreadable_file at ""'):
         gs.Case.load("")
 
 
 def test_names_of_estimators_are_not_ours():
-    with pytest.raises(ValueError, match="choose another name"):
+    with pytest.raises(ValueError, match='"default"'):
         gs.benchmark({"default": gs.correlate}, cases=["vortex"])
 
 
@@ -94,7 +93,7 @@ def test_text_of_a_setup_is_no_file_name():
 
 def test_devices_have_names(bos, case):
     for call in (bos.render, lambda device: gs.correlate(case.a, case.b, device=device)):
-        with pytest.raises(gs.DeviceError, match='"auto", "cpu" or "cuda"'):
+        with pytest.raises(gs.DeviceError, match='"gpu".*"auto", "cpu" or "cuda"'):
             call(device="gpu")
 
 
@@ -106,19 +105,19 @@ def test_vectors_may_be_a_file_but_not_nothing(case, tmp_path):
 
 
 def test_estimators_have_names():
-    with pytest.raises(TypeError, match="by name"):
+    with pytest.raises(TypeError, match="estimators"):
         gs.benchmark(lambda a, b: gs.correlate(a, b, window=32))
 
 
-def test_messages_name_the_arguments_of_the_function(case):
+def test_messages_name_the_arguments_of_the_function(case, refused):
     with pytest.raises(gs.SetupError) as caught:
         gs.correlate(case.a, case.b, windw=32, overlap=3, mask={"knid": "none"})
     problems = {problem.key: problem for problem in caught.value.problems}
     assert {"windw", "overlap"} <= set(problems)
-    assert problems["windw"].code == "unknown_key" and 'did you mean "window"?' in problems["windw"].text
+    assert problems["windw"].code == "unknown_key" and '"window"' in problems["windw"].text
     assert problems["overlap"].code == "out_of_range" and problems["overlap"].file is None
     assert "correlate." not in str(caught.value)
-    with pytest.raises(gs.DataError, match="set window smaller"):
+    with refused(gs.DataError, "wrong_shape at a", "128 px", "window"):
         case.correlate(window=128)
 
 
@@ -136,8 +135,8 @@ def test_options_are_arguments(case, call, key):
     assert str(caught.value).startswith(key) and "--" not in str(caught.value)
 
 
-def test_figures_have_known_endings(bos, tmp_path):
-    with pytest.raises(gs.OutputError, match=".svg"):
+def test_figures_have_known_endings(bos, tmp_path, refused):
+    with refused(gs.OutputError, "output at layout.tiff", ".svg"):
         gs.info.setup(bos, figure=tmp_path / "layout.tiff")
     with pytest.raises(ValueError, match="figure_format"):
         gs.design(bos, figures=tmp_path, figure_format="tiff")
@@ -163,10 +162,10 @@ def test_figures_have_known_endings(bos, tmp_path):
     (lambda case, folder: gs.set_threads(-3), "threads"),
 ])  # fmt: skip
 def test_whole_numbers_have_limits(case, tmp_path, call, name):
-    with pytest.raises(ValueError, match=f"^{name} must be a whole number from .* to "):
+    with pytest.raises(ValueError, match=f"^{name} "):
         call(case, tmp_path)
 
 
-def test_a_sequence_has_images(tmp_path):
-    with pytest.raises(gs.DataError, match="give a pattern, a folder"):
+def test_a_sequence_has_images(tmp_path, refused):
+    with refused(gs.DataError, "arguments at images"):
         gs.correlate_sequence([], output=tmp_path / "vectors")

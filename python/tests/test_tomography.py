@@ -77,18 +77,18 @@ def test_options_change_the_volume(result, views):
     assert bounded.density.min() >= 1.1 and bounded.density.max() <= 1.3
 
 
-def test_problems_are_reported(views):
-    with pytest.raises(gs.SetupError, match="reference"):
+def test_problems_are_reported(views, refused):
+    with refused(gs.SetupError, "invalid_value at reference"):
         gs.tomography(views, device="cpu")
-    with pytest.raises(gs.SetupError, match="3 to 16 views"):
+    with refused(gs.SetupError, "invalid_value at views", "3 to 16"):
         gs.tomography(views[:2], reference="left", device="cpu")
-    with pytest.raises(gs.SetupError, match="one angle for each"):
+    with refused(gs.SetupError, "invalid_value at angles_deg"):
         gs.tomography(views, reference="left", angles_deg=(0, 60), device="cpu")
-    with pytest.raises(ValueError, match="six numbers"):
+    with pytest.raises(ValueError, match="bounds_mm"):
         gs.tomography(views, bounds_mm=(0, 0, 0), **GAUGE)
-    with pytest.raises(gs.DataError, match="different lines"):
+    with refused(gs.DataError, "undetermined at tomography"):
         gs.tomography(views, reference="left", angles_deg=(0, 0, 60), device="cpu")
-    with pytest.raises(gs.DataError, match="does not exist"):
+    with refused(gs.DataError, "missing_file at none"):
         gs.tomography([*views[:2], views[0].parent / "none"], **GAUGE)
 
 

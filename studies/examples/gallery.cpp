@@ -11,6 +11,7 @@
 #include "analysis/errors/error_summary.h"
 #include "studies/case/case.h"
 #include "studies/case/shared_folder.h"
+#include "studies/case/write_case.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/draw_or_warn.h"
 #include "studies/figures/map_panels.h"

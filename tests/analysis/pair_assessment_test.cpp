@@ -21,6 +21,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr char not_judged[] = "not judged: ";  ///< beginning of a verdict that is followed by its reason
 
 auto everywhere(double u, double v) {
   return [u, v](Vec2d) { return Vec2d{u, v}; };
@@ -85,8 +88,9 @@ TEST(PairVerdict, DetectsUncorrelatedFrames) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     DisplacementField const field = judged(pairs[k]);
     EXPECT_EQ(counting(field), 0u) << k;
+    EXPECT_FALSE(frames_correlate(field)) << k;
     EXPECT_GT(count(field, VectorReason::uncorrelated), field.size() / 2) << k;
-    EXPECT_THAT(field.warnings, ElementsAre(Warns("unreliable", HasSubstr("do not correlate")))) << k;
+    EXPECT_THAT(field.warnings, ElementsAre(Warns("unreliable"))) << k;
     for (std::size_t i = 0; i < field.size(); ++i) EXPECT_TRUE(std::isnan(field.displacement_px[i].x));
   }
 }
@@ -128,9 +132,8 @@ TEST(PairVerdict, WarnsIfOneFifthFailsValidation) {
   settings.least_peak_ratio = 2.0;
   DisplacementField const filled = judged(pair, settings);
   EXPECT_GT(count(filled, VectorReason::neighbours) + count(filled, VectorReason::other_peak), filled.size() / 5);
-  EXPECT_THAT(
-      filled.warnings,
-      ElementsAre(Warns("unreliable", AllOf(HasSubstr("peak ratio "), HasSubstr("correlate.replace = false")))));
+  EXPECT_THAT(filled.warnings,
+              ElementsAre(Warns("unreliable", AllOf(HasSubstr("peak ratio"), HasSubstr("correlate.replace = false")))));
   settings.replace = false;
   DisplacementField const field = judged(pair, settings);
   EXPECT_EQ(std::count(field.status.begin(), field.status.end(), VectorStatus::replaced), 0);
@@ -139,7 +142,7 @@ TEST(PairVerdict, WarnsIfOneFifthFailsValidation) {
     EXPECT_EQ(std::isnan(field.displacement_px[i].x), !field.counts(i)) << i;
     EXPECT_EQ(field.failed[i] != FailedTest::none, field.reason[i] == VectorReason::not_replaced) << i;
   }
-  EXPECT_THAT(field.warnings, ElementsAre(Warns("unreliable", HasSubstr("are invalid"))));
+  EXPECT_THAT(field.warnings, ElementsAre(Warns("unreliable", Not(HasSubstr("correlate.replace")))));
 }
 
 PairSequence repeated(std::size_t pairs, ParticleSettings const& settings, double flow_px, std::uint64_t other_seed) {
@@ -167,13 +170,14 @@ TEST(EnsembleVerdict, IsThatOfAllPairs) {
   DisplacementField const strangers = verdict(repeated(6, few, 2.3, 1));
   EXPECT_EQ(strangers.verdict, "does not correlate");
   EXPECT_EQ(counting(strangers), 0u);
-  EXPECT_THAT(strangers.warnings, ElementsAre(Warns("unreliable", HasSubstr("do not correlate"))));
+  EXPECT_THAT(strangers.warnings, ElementsAre(Warns("unreliable")));
   PairSequence const moving = repeated(6, few, 2.3, 0);
   DisplacementField const still = verdict({6, [&](std::size_t k) {
                                              Image<double> const frame = moving.frames(k).reference();
                                              return HostFrames(frame, frame);
                                            }});
-  EXPECT_THAT(still.verdict, HasSubstr("same image"));
+  EXPECT_THAT(still.verdict, StartsWith(not_judged));
+  EXPECT_THAT(still.warnings, ElementsAre(Warns("unreliable")));
 }
 
 /// The first pairs of `first`, followed by those of `then`.
@@ -201,7 +205,7 @@ TEST(EnsembleVerdict, DoesNotDependOnTheOrderOfPairs) {
   for (PairSequence const& pairs : {one_after_another(regular, masked), one_after_another(masked, regular)}) {
     DisplacementField field = correlate_ensemble(pairs, settings);
     assess_ensemble(field, pairs, settings);
-    EXPECT_THAT(field.verdict, HasSubstr("the pattern repeats every "));
+    EXPECT_THAT(field.verdict, AllOf(StartsWith(not_judged), HasSubstr("8.00 px")));
     EXPECT_EQ(count(field, VectorReason::masked), 0u);
     EXPECT_GT(std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::here), 0);
   }
@@ -214,9 +218,10 @@ TEST(PairVerdict, ValidationFailuresAreNotDecorrelation) {
   DisplacementField const field =
       judged(render_particle_pair({.columns = 128, .rows = 128}, everywhere(0.3, -0.2)), settings);
   EXPECT_EQ(counting(field), 0u);
-  EXPECT_EQ(field.verdict, "not judged: no vector passed its tests");
-  EXPECT_THAT(field.warnings, ElementsAre(Warns("unreliable", AllOf(HasSubstr("(peak ratio 100 %): 100 % are invalid"),
-                                                                    Not(HasSubstr("replace"))))));
+  EXPECT_THAT(field.verdict, StartsWith(not_judged));
+  EXPECT_THAT(
+      field.warnings,
+      ElementsAre(Warns("unreliable", AllOf(HasSubstr("peak ratio 100 %"), Not(HasSubstr("correlate.replace"))))));
 }
 
 // Left half 0.4 px, right half 45 px: windows farther from the middle than their search radius are either correct or
@@ -232,7 +237,8 @@ TEST(PairVerdict, RejectsUncorrelatedHalf) {
         pair.flow(i, j) = other.flow(i, j);
       }
     DisplacementField const field = judged(pair);
-    EXPECT_THAT(field.warnings, ElementsAre(Warns("unreliable", HasSubstr("do not correlate")))) << seed;
+    EXPECT_THAT(field.warnings, ElementsAre(Warns("unreliable"))) << seed;
+    EXPECT_GT(count(field, VectorReason::uncorrelated), 0u) << seed;
     for (std::size_t i = 0; i < field.size(); ++i) {
       if (field.position_px[i].x < 128.0 - 32.0) {
         EXPECT_NEAR(field.displacement_px[i].x, 0.4, 0.3) << seed << ' ' << i;
@@ -255,8 +261,9 @@ TEST(PairVerdict, WarnsOfOnePictureGivenTwice) {
     if (method.tracks_dots) continue;  // see TrackingCorrelator
     CorrelationSettings settings;
     settings.method = method.name;
-    EXPECT_THAT(judged(pair, settings).warnings, ElementsAre(Warns("unreliable", HasSubstr("same image"))))
-        << method.name;
+    DisplacementField const field = judged(pair, settings);
+    EXPECT_THAT(field.warnings, ElementsAre(Warns("unreliable"))) << method.name;
+    EXPECT_THAT(field.verdict, StartsWith(not_judged)) << method.name;
   }
   pair.flow(60, 60) += 1.0;
   EXPECT_THAT(judged(pair).warnings, IsEmpty()) << "the images differ, as for a small real displacement";
@@ -280,23 +287,23 @@ TEST(PairVerdict, EveryPairHasAResult) {
                 .verdict,
             "correlates");
   EXPECT_THAT(judged(render_particle_pair({.noise = 0.05, .pitch_px = 8.3}, everywhere(2.5, 0.0))).verdict,
-              HasSubstr("not judged: the pattern repeats every 8.3"));
+              AllOf(StartsWith(not_judged), HasSubstr("8.3")));
   ParticlePair const flat{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)};
-  EXPECT_EQ(judged(flat).verdict, "not judged: no window has a signal");
+  EXPECT_THAT(judged(flat).verdict, StartsWith(not_judged));
   double const nan = std::numeric_limits<double>::quiet_NaN();
   ParticlePair const masked{Image<double>(128, 128, nan), Image<double>(128, 128, nan)};
-  EXPECT_EQ(judged(masked).verdict, "not judged: all windows are masked");
+  EXPECT_THAT(judged(masked).verdict, StartsWith(not_judged));
   CorrelationSettings settings;
   settings.median_threshold.reset();
-  EXPECT_THAT(judged(twice, settings).verdict, HasSubstr("not judged: correlate.median_threshold"));
+  EXPECT_THAT(judged(twice, settings).verdict, AllOf(StartsWith(not_judged), HasSubstr("correlate.median_threshold")));
   settings = {};
   settings.method = "dis";
-  EXPECT_THAT(judged(twice, settings).verdict, HasSubstr("not judged: optical flow"));
+  EXPECT_THAT(judged(twice, settings).verdict, StartsWith(not_judged));
   settings.max_displacement_px = 0.1;
   EXPECT_THAT(judged(twice, settings).warnings,
               ElementsAre(Warns("unreliable", HasSubstr("correlate.max_displacement_px = 0.1"))));
   EXPECT_THAT(judged(render_particle_pair({.columns = 64, .rows = 64}, everywhere(0.3, 0.0)), windows_of(64)).verdict,
-              HasSubstr("not judged: there are fewer than 4 windows"));
+              AllOf(StartsWith(not_judged), HasSubstr("4 windows")));
   twice.flow = twice.reference;
   EXPECT_EQ(judged(twice).verdict, "not judged: both frames are the same image");
 }
@@ -342,8 +349,9 @@ TEST(OutsideWindows, AreToldFromMaskedOnes) {
 TEST(PairVerdict, WarnsOfAPatternThatRepeats) {
   ParticlePair const pair = render_particle_pair({.noise = 0.05, .pitch_px = 8.3}, everywhere(2.5, 0.0));
   DisplacementField const unbounded = judged(pair);
-  EXPECT_THAT(unbounded.warnings, ElementsAre(Warns("unreliable", AllOf(HasSubstr("8.3"), HasSubstr("32 px"),
-                                                                        HasSubstr("max_displacement_px below 4.1")))));
+  EXPECT_THAT(unbounded.warnings,
+              ElementsAre(Warns("unreliable", AllOf(HasSubstr("8.3"), HasSubstr("32 px"),
+                                                    HasSubstr("max_displacement_px"), HasSubstr("4.1")))));
   EXPECT_EQ(counting(unbounded), unbounded.size()) << "the ambiguity is reported, and the vectors are kept";
   DisplacementField const bounded = judged(pair, within(4.1));
   EXPECT_THAT(bounded.warnings, IsEmpty()) << "no other displacement is within the limit";
@@ -362,8 +370,8 @@ TEST(PairVerdict, ReportsLimitThatRejectsAllVectors) {
   DisplacementField const random = judged(render_particle_pair({}, everywhere(6.0, 0.0)), within(4.0));
   EXPECT_EQ(counting(random), 0u);
   ASSERT_FALSE(random.warnings.empty());
-  EXPECT_THAT(random.warnings[0],
-              Warns("unreliable", AllOf(HasSubstr("do not correlate"), HasSubstr("max_displacement_px = 4"))));
+  EXPECT_THAT(random.warnings[0], Warns("unreliable", HasSubstr("max_displacement_px = 4")));
+  EXPECT_FALSE(frames_correlate(random));
 }
 
 /// A grid of 10 x 10 disjoint windows of 32 px with the given correlation.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "analysis/vectors/vector_file.h"
+#include "tests/support/numbers_in.h"
 
 namespace gladstone {
 namespace {
@@ -74,8 +75,8 @@ TEST(ScreenVectors, TakesImpossiblePlacesOutAndCountsThem) {
   ASSERT_EQ(field.size(), 50u);
   EXPECT_EQ(field.peak_ratio[2], 2.0);
   EXPECT_EQ(field.peak_ratio[3], 8.0) << "what belongs to a vector stays with it";
-  EXPECT_THAT(left_out.text(), AllOf(HasSubstr("2 with a position that is nan or infinite"),
-                                     HasSubstr("3 outside the image (by more than 2 px)")));
+  EXPECT_THAT(numbers_in(left_out.text()), testing::ElementsAre(2, 3, 2))
+      << "2 without a position, and 3 that are more than 2 px outside the image";
 }
 
 // The image is 200 x 100 px: a displacement of 200 px crosses it, one of 201 px cannot be observed.
@@ -113,7 +114,7 @@ TEST(ScreenVectors, SaysWhereTheyAreWhenNoneIsLeft) {
   RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_EQ(field.size(), 0u);
   EXPECT_THAT(reason_to_reject_positions(field, left_out, columns, rows),
-              AllOf(HasSubstr("200 x 100 px"), HasSubstr("1550 to 17550"), HasSubstr("1550 to 7950")));
+              AllOf(HasSubstr("200 x 100 px"), HasSubstr("1550"), HasSubstr("17550"), HasSubstr("7950")));
 }
 
 // Counted from another corner: half of the grid of 5 x 11 vectors is outside.

@@ -193,19 +193,19 @@ TEST_F(Cameras, OneCameraMayHaveItsOwnLens) {
 
 TEST_F(Cameras, MistakesStandAtTheirPlace) {
   auto const refused = [this](std::string const& old, std::string const& replacement, std::string const& at,
-                              std::vector<std::string> pieces) {
+                              std::string const& code, std::vector<std::string> const& values = {}) {
     std::string const text = with(stereo, old, replacement);
-    pieces.insert(pieces.begin(), "setup.toml:" + place_of(text, at) + ": ");
-    expect_setup_refused(text, pieces);
+    expect_setup_error(text, code + " at setup.toml:" + place_of(text, at), values);
   };
-  refused("name = \"right\"", "name = \"left\"  # twice", "name = \"left\"  # twice", {"the name of another camera"});
-  refused("name = \"right\"", "name = \"a/b\"", "name = \"a/b\"", {"not valid as the name of a folder"});
-  refused("focal_length_mm = 120.0", "focal_lenth_mm = 120.0", "focal_lenth_mm", {"did you mean \"focal_length_mm\"?"});
-  refused("[96, 64]", "[0, 64]", "pixels = [0", {"must be at least 1"});
+  refused("name = \"right\"", "name = \"left\"  # twice", "name = \"left\"  # twice", "invalid_value", {"\"left\""});
+  refused("name = \"right\"", "name = \"a/b\"", "name = \"a/b\"", "invalid_value");
+  refused("focal_length_mm = 120.0", "focal_lenth_mm = 120.0", "focal_lenth_mm", "unknown_key",
+          {"\"focal_length_mm\""});
+  refused("[96, 64]", "[0, 64]", "pixels = [0", "out_of_range", {" 1 "});
   refused("[correlate]", "[[window]]\nposition_mm = [0, 0, 100]\ncameras = [\"rigth\"]\n[correlate]", "cameras",
-          {"\"rigth\" is not the name of a camera", "\"left\" or \"right\""});
+          "invalid_value", {"\"rigth\"", "\"left\" or \"right\""});
   std::string const nameless = with(stereo, "name = \"right\"\n", "");
-  expect_setup_refused(nameless, {"camera.name", "is missing"});
+  expect_setup_error(nameless, "missing_key at setup.toml:11:1", {"camera.name"});
 }
 
 TEST_F(Cameras, ProblemsOfAllComeTogetherAndOnce) {
@@ -213,23 +213,21 @@ TEST_F(Cameras, ProblemsOfAllComeTogetherAndOnce) {
   text = with(text, "[96, 64]", "[96, 0]");
   text = with(text, "dots_per_32px_window", "dots_per_window");
   write("setup.toml", text);
-  Outcome const outcome = gladstone({"render", "setup.toml", "-o", "case"});
+  Outcome const outcome = gladstone({"render", "setup.toml", "-o", "case", "--json"});
   EXPECT_EQ(outcome.exit_code, 2);
-  for (std::string const piece : {"pixels = [0", "pixels = [96", "dots_per_window"}) {
-    std::string const where = "setup.toml:" + place_of(text, piece) + ":";
-    auto const first = outcome.err.find(where);
-    ASSERT_NE(first, std::string::npos) << piece << "\n" << outcome.err;
-    EXPECT_EQ(outcome.err.find(where, first + 1), std::string::npos) << outcome.err;
-  }
+  EXPECT_THAT(errors_in(outcome.out),
+              testing::UnorderedElementsAre("out_of_range at setup.toml:" + place_of(text, "pixels = [0"),
+                                            "out_of_range at setup.toml:" + place_of(text, "pixels = [96"),
+                                            "unknown_key at setup.toml:" + place_of(text, "dots_per_window")));
   EXPECT_FALSE(fs::exists(in("case")));
 }
 
 TEST_F(Cameras, CommandsOnOneCameraAskWhichOne) {
   render("case");
-  expect_refused({"correlate", "case"}, 2, {"case: contains one case for each of its cameras", "case/left"});
-  expect_refused({"compare", "case"}, 2, {"case: contains one case for each of its cameras", "case/left"});
+  expect_error({"correlate", "case"}, 2, "undetermined at case", {"case/left"});
+  expect_error({"compare", "case"}, 2, "undetermined at case", {"case/left"});
   write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
-  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "out.csv"}, 2, {"several cameras"});
+  expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", "out.csv"}, 2, "invalid_value at setup.toml:3:3");
 }
 
 // The results of a camera are deleted together with the frames from which they were computed; files of the user remain.

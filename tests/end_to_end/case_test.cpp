@@ -145,7 +145,7 @@ TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
   succeed({"correlate", "case", "-o", "z.csv", "--config", "s.toml"});
   EXPECT_EQ(read("z.csv"), text);
   write("s.toml", "[corelate]\nwindow_px = [32, 16]\n");
-  expect_refused({"correlate", "case", "--config", "s.toml"}, 2, {"s.toml:1:2: unknown table [corelate]"});
+  expect_error({"correlate", "case", "--config", "s.toml"}, 2, "unknown_key at s.toml:1:2", {"[corelate]"});
 }
 
 TEST_F(Case, ComparisonsCanBeWrittenApart) {
@@ -167,10 +167,10 @@ TEST_F(Case, ComparisonsCanBeWrittenApart) {
   EXPECT_EQ(read("case/errors.json"), beside);
   EXPECT_TRUE(fs::exists(in("case/vectors.h5")));
   EXPECT_TRUE(fs::exists(in("case/error_budget.png")));
-  expect_refused({"compare", "case", "-o", "setup.toml"}, 2, {"setup.toml: is a file"});
+  expect_error({"compare", "case", "-o", "setup.toml"}, 2, "output at setup.toml");
   fs::create_directory(in("mine"));
   write("mine/notes.txt", "notes");
-  expect_refused({"compare", "case", "-o", "mine"}, 2, {"mine"});
+  expect_error({"compare", "case", "-o", "mine"}, 2, "output at mine");
   EXPECT_EQ(read("mine/notes.txt"), "notes");
   render("case");
   EXPECT_THAT(names("case"),
@@ -192,8 +192,8 @@ TEST_F(Case, SetOfACorrelationChangesTheCasesOwnSettings) {
   render("case");
   EXPECT_EQ(json_of({"correlate", "case"})["vectors"], 49);  // 16 px windows every 8 px: 7 x 7
   EXPECT_EQ(json_of({"correlate", "case", "--set", "correlate.overlap=0"})["vectors"], 16);  // every 16 px
-  expect_refused({"correlate", "case", "--set", "lens.f_number=8"}, 2,
-                 {"--set lens.f_number=8", "does not begin with"});
+  expect_error({"correlate", "case", "--set", "lens.f_number=8"}, 2, "unknown_key at --set lens.f_number=8",
+               {"correlate."});
 }
 
 // Each valid vector has a sigma, which the comparison verifies; both components of the vectors count.

@@ -14,20 +14,21 @@ using CommandLine = ProgramFixture;
 using testing::HasSubstr;
 
 TEST_F(CommandLine, UnknownCommandsAndOptionsNameTheNearest) {
-  expect_refused({"corelate", "case"}, 2, {"unknown command \"corelate\"", "did you mean \"correlate\"?"});
-  expect_refused({"frobnicate"}, 2, {"unknown command \"frobnicate\"", "\"render\""});
-  expect_refused({}, 2, {"no command is given"});
-  expect_refused({"render", "setup.toml", "-o", "case", "--sett", "a=1"}, 2,
-                 {"unknown option \"--sett\"", "\"--set\""});
-  expect_refused({"render", "setup.toml", "more.toml", "-o", "case"}, 2, {"unknown argument \"more.toml\""});
+  expect_error({"corelate", "case"}, 2, "arguments at corelate", {"\"correlate\""});
+  expect_error({"frobnicate"}, 2, "arguments at frobnicate", {"\"render\""});
+  expect_error({}, 2, "arguments at ", {"\"render\""});
+  expect_error({"render", "setup.toml", "-o", "case", "--sett", "a=1"}, 2, "arguments at --sett", {"\"--set\""});
+  expect_error({"render", "setup.toml", "more.toml", "-o", "case"}, 2, "arguments at more.toml");
 }
 
 TEST_F(CommandLine, WhatIsRequiredIsNamed) {
-  expect_refused({"render", "setup.toml"}, 2, {"--output is required"});
-  expect_refused({"render", "setup.toml", "-o"}, 2, {"--output"});
-  expect_refused({"trace", "setup.toml", "-o", "out.csv"}, 2, {"--rays is required"});
-  expect_refused({"render", "setup.toml", "-o", "case", "--threads", "-1"}, 2, {"--threads"});
-  expect_refused({"render", "setup.toml", "-o", "case", "--device", "tpu"}, 2, {"--device"});
+  expect_error({"render", "setup.toml"}, 2, "arguments at --output");
+  Outcome const without_value = gladstone({"render", "setup.toml", "-o"});
+  EXPECT_EQ(without_value.exit_code, 2);
+  EXPECT_THAT(without_value.err, HasSubstr("--output"));
+  expect_error({"trace", "setup.toml", "-o", "out.csv"}, 2, "arguments at --rays");
+  expect_error({"render", "setup.toml", "-o", "case", "--threads", "-1"}, 2, "arguments at --threads");
+  expect_error({"render", "setup.toml", "-o", "case", "--device", "tpu"}, 2, "arguments at --device");
 }
 
 TEST_F(CommandLine, AGpuThatCannotBeHadIsADeviceError) {
@@ -37,7 +38,7 @@ TEST_F(CommandLine, AGpuThatCannotBeHadIsADeviceError) {
        {std::vector<std::string>{"render", "setup.toml", "-o", "case"}, {"validate"}}) {
     auto arguments = command;
     arguments.insert(arguments.end(), {"--device", "cuda"});
-    expect_refused(arguments, 5, {"device error: ", "use --device cpu or auto"});
+    expect_error(arguments, 5, "device at ", {"--device cuda"});
   }
   unsetenv("CUDA_VISIBLE_DEVICES");
 }
@@ -98,7 +99,7 @@ TEST_F(CommandLine, VersionTellsTheSameAsJson) {
 
 TEST_F(CommandLine, InfoSaysWhatItsKindsTake) {
   expect_error({"info", "image", "a.tif", "--x", "1"}, 2, "arguments at --x");
-  expect_refused({"info", "image"}, 2, {"info image: requires a file"});
+  expect_error({"info", "image"}, 2, "arguments at info image");
 }
 
 TEST_F(CommandLine, EveryHelpHasAnExample) {

@@ -131,7 +131,9 @@ TEST_F(Completion, ManualPageListsEveryCommandAndPassesTheCheck) {
   }
 }
 
-TEST_F(Completion, RefusesAnotherShell) { expect_refused({"completion", "bsh"}, 2, {"bsh", "did you mean \"bash\"?"}); }
+TEST_F(Completion, RefusesAnotherShell) {
+  expect_error({"completion", "bsh"}, 2, "arguments at kind", {"bsh", "\"bash\""});
+}
 
 }  // namespace
 }  // namespace gladstone::end_to_end

@@ -70,8 +70,8 @@ TEST_F(Convert, DensityIsWrittenInEveryFormat) {
       EXPECT_EQ(field->units().value_factor(dimension_of_density).factor, 1.0) << one;
     }
   }
-  expect_refused({"convert", "density.h5", "-o", "d.dat"}, 2, {"d.dat", ".vti"});
-  expect_refused({"reconstruct", "case", "--reference", "left", "-o", "d.txt"}, 2, {"d.txt", ".h5"});
+  expect_error({"convert", "density.h5", "-o", "d.dat"}, 2, "output at d.dat", {".vti"});
+  expect_error({"reconstruct", "case", "--reference", "left", "-o", "d.txt"}, 2, "output at d.txt", {".h5"});
 }
 
 TEST_F(Convert, TruthIsWrittenAsVectors) {
@@ -111,15 +111,15 @@ TEST_F(Convert, TruthIsWrittenAtPixels) {
   }
   EXPECT_EQ(json_of({"convert", "case/truth.h5", "-o", "truth.csv", "--exact"})["columns"], 64);
   write("v.csv", "x,y,u,v\n1,2,3,4\n");
-  expect_refused({"convert", "v.csv", "-o", "w.csv", "--spacing", "4"}, 2, {"--spacing"});
-  expect_refused({"convert", "v.csv", "-o", "w.csv", "--exact"}, 2, {"--exact"});
+  expect_error({"convert", "v.csv", "-o", "w.csv", "--spacing", "4"}, 2, "invalid_value at --spacing");
+  expect_error({"convert", "v.csv", "-o", "w.csv", "--exact"}, 2, "invalid_value at --exact");
 }
 
 TEST_F(Convert, ForeignVectorsAreReadByTheirConventions) {
   write("up.dat",
         "VARIABLES = \"x [px]\", \"y [px]\", \"Vx [px]\", \"Vy [px]\", \"isValid\"\nZONE I=2, J=1\n"
         "3 10 1 0.5 1\n7 10 1 0.5 1\n");
-  expect_refused({"convert", "up.dat", "-o", "v.csv"}, 2, {"up.dat", "--image-rows"});
+  expect_error({"convert", "up.dat", "-o", "v.csv"}, 2, "undetermined at up.dat", {"--image-rows"});
   auto const json = json_of({"convert", "up.dat", "-o", "v.csv", "--image-rows", "64"});
   EXPECT_EQ(json["format"], "DaVis");
   EXPECT_THAT(json["conventions"].get<std::string>(), testing::HasSubstr("y-up-image"));
@@ -132,16 +132,16 @@ TEST_F(Convert, ForeignVectorsAreReadByTheirConventions) {
 
 TEST_F(Convert, OtherOutputsAreRefused) {
   write("v.csv", "x,y,u,v\n1,2,3,4\n");
-  expect_refused({"convert", "v.csv", "-o", "v.xyz"}, 2, {"v.xyz", ".vtp"});
-  expect_refused({"convert", "v.csv", "-o", "v.csv"}, 2, {"v.csv"});
-  expect_refused({"convert", "absent.csv", "-o", "v.vtp"}, 2, {"absent.csv"});
-  expect_refused({"convert", "v.csv", "-o", "v.nc", "--image-rows", "0"}, 2, {"--image-rows"});
+  expect_error({"convert", "v.csv", "-o", "v.xyz"}, 2, "output at v.xyz", {".vtp"});
+  expect_error({"convert", "v.csv", "-o", "v.csv"}, 2, "output at v.csv");
+  expect_error({"convert", "absent.csv", "-o", "v.vtp"}, 2, "missing_file at absent.csv");
+  expect_error({"convert", "v.csv", "-o", "v.nc", "--image-rows", "0"}, 2, "arguments at --image-rows");
 }
 
 TEST_F(Convert, ScatteredVectorsAreRefusedByFormatsOfGrids) {
   write("v.csv", "x,y,u,v\n1,2,3,4\n5,7,3,4\n9,1,3,4\n");
-  expect_refused({"convert", "v.csv", "-o", "v.nc"}, 2, {"v.nc", ".vtp"});
-  expect_refused({"convert", "v.csv", "-o", "v.vti"}, 2, {"v.vti", ".vtp"});
+  expect_error({"convert", "v.csv", "-o", "v.nc"}, 2, "output at v.nc", {".vtp"});
+  expect_error({"convert", "v.csv", "-o", "v.vti"}, 2, "output at v.vti", {".vtp"});
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST_F(InfoField, OfASliceIsOnePlane) {
 
 TEST_F(InfoField, RefusesFiguresThatCannotBe) {
   write_field("field.vtk", 6, 5, 4);
-  expect_refused({"info", "field", "field.vtk", "--figure", "field.vtk"}, 2, {"field.vtk: would be overwritten"});
+  expect_error({"info", "field", "field.vtk", "--figure", "field.vtk"}, 2, "output at field.vtk");
   write_field("line.vtk", 6, 1, 1);
   Outcome const line = gladstone({"info", "field", "line.vtk", "--figure", "planes.svg"});
   EXPECT_EQ(line.exit_code, 2);
@@ -74,7 +74,7 @@ TEST_F(InfoField, DescribesAVelocityByItsComponents) {
   std::string const csv = succeed({"info", "field", "v.csv", "--csv", "--quiet"});
   EXPECT_THAT(csv, HasSubstr("maximum.1,,largest value of v,11,m/s,\n"));
   EXPECT_THAT(csv, HasSubstr("nodes.0,,nodes along x,2,,\n"));
-  expect_refused({"info", "field", "v.csv", "--dataset", "rho"}, 2, {"rho"});
+  expect_error({"info", "field", "v.csv", "--dataset", "rho"}, 2, "missing_content at v.csv", {"\"rho\""});
 }
 
 }  // namespace

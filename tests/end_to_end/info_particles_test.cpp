@@ -47,8 +47,8 @@ TEST_F(InfoParticles, TellsWhatToExpect) {
 }
 
 TEST_F(InfoParticles, IsOfPivAlone) {
-  expect_refused({"info", "particles", "setup.toml"}, 2, {"setup.toml: has no particles"});
-  expect_refused({"info", "particles"}, 2, {"info particles: requires a file"});
+  expect_error({"info", "particles", "setup.toml"}, 2, "wrong_format at setup.toml");
+  expect_error({"info", "particles"}, 2, "arguments at info particles");
 }
 
 }  // namespace

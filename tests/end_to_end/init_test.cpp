@@ -110,7 +110,7 @@ TEST_F(Init, NamesTheFileInItsCommands) {
   EXPECT_THAT(read("tunnel.toml"), HasSubstr("#   " + next + '\n'));
 }
 
-TEST_F(Init, RefusesAnUnknownKind) { expect_refused({"init", "bose"}, 2, {"bose", "did you mean \"bos\"?"}); }
+TEST_F(Init, RefusesAnUnknownKind) { expect_error({"init", "bose"}, 2, "arguments at kind", {"bose", "\"bos\""}); }
 
 // Without the comment signs the keys with a default form a valid TOML document of values, one table at a time.
 TEST_F(Init, CompleteListsAreSetupsAndHoldTomlValues) {

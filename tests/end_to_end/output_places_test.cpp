@@ -10,7 +10,6 @@ namespace gladstone::end_to_end {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -124,8 +123,7 @@ TEST_F(Places, AMountPoint) {
     write("file.csv", "old");
     if (::mount(in("setup.toml").c_str(), in("file.csv").c_str(), nullptr, MS_BIND, nullptr) != 0) ::_exit(77);
     Outcome const onto = run({"correlate", "disk", "-o", "file.csv"}, folder_);
-    if (onto.exit_code != 2 || onto.err.find("file.csv: cannot be replaced") == std::string::npos)
-      err += onto.err + '?';
+    if (onto.exit_code != 2 || onto.err.find("gladstone: file.csv: ") == std::string::npos) err += onto.err + '?';
     write("stderr", err);
     ::_exit(err.empty() ? 0 : 1);
   }
@@ -161,14 +159,11 @@ TEST_F(Places, DevicesAndOpenFilesAreRefusedBeforeAnythingIsComputed) {
   render("case");
   write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
   for (std::string const place : {"/dev/full", "/dev/null"}) {
-    expect_refused({"render", "setup.toml", "-o", place}, 2,
-                   {place + ": is not a folder (it is a device); name a folder"});
-    expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", place}, 2,
-                   {place + ": is not a regular file (it is a device); name a file"});
-    expect_refused({"demo", "-o", place}, 2, {place});
+    expect_error({"render", "setup.toml", "-o", place}, 2, "output at " + place.substr(5));
+    expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", place}, 2, "output at " + place.substr(5));
+    expect_error({"demo", "-o", place}, 2, "output at summary.md", {});
   }
-  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "/dev/stdout"}, 2,
-                 {"/dev/stdout: is a file or pipe"});
+  expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", "/dev/stdout"}, 2, "output at stdout");
   expect_error({"correlate", "case", "-o", "/dev/full"}, 2, "output at full");
 }
 
@@ -178,27 +173,24 @@ TEST_F(Places, AnOutputIsNeverAnInput) {
   fs::create_hard_link(in("rays.csv"), in("hard.csv"));
   std::string const around = "../" + folder_.filename().string() + "/rays.csv";
   for (std::string const& output : std::vector<std::string>{"rays.csv", "link.csv", "hard.csv", around}) {
-    expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", output}, 2,
-                   {output + ": would be overwritten, but is an input of this command"});
+    expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", output}, 2,
+                 "output at " + fs::path(output).filename().string());
   }
-  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "setup.toml"}, 2,
-                 {"setup.toml: would be overwritten"});
+  expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", "setup.toml"}, 2, "output at setup.toml");
   expect_error({"render", "setup.toml", "-o", "."}, 2, "output at setup.toml");
   render("case");
-  expect_refused({"render", "case/setup.toml", "-o", "case"}, 2, {"case/setup.toml: would be overwritten"});
+  expect_error({"render", "case/setup.toml", "-o", "case"}, 2, "output at setup.toml");
   fs::create_symlink("case/truth.h5", in("v.h5"));
   expect_error({"correlate", "case", "-o", "v.h5"}, 2, "output at v.h5");
   fs::copy(in("case/reference.tif"), in("picture.csv"));
-  expect_refused({"correlate", "picture.csv", "case/flow.tif", "-o", "picture.csv"}, 2,
-                 {"picture.csv: would be overwritten"});
+  expect_error({"correlate", "picture.csv", "case/flow.tif", "-o", "picture.csv"}, 2, "output at picture.csv");
   succeed({"correlate", "case"});
   fs::create_symlink("vectors.h5", in("case/errors.json"));
   expect_error({"compare", "case"}, 2, "output at errors.json");
   fs::create_directory(in("run"));
   write("run/study.toml", "base = \"../setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
   fs::create_directory(in("run/cases"));
-  expect_refused({"sweep", "plan", "run/study.toml", "-o", "run", "--device", "cpu"}, 2,
-                 {"run/study.toml: would be overwritten"});
+  expect_error({"sweep", "plan", "run/study.toml", "-o", "run", "--device", "cpu"}, 2, "output at study.toml");
 }
 
 // A field in the place of one of the case's own files: it would be read, and then overwritten.
@@ -224,8 +216,7 @@ TEST_F(Places, AStudyIsRefusedItsPlaceBeforeItIsPlanned) {
   fs::create_directory(in("thesis"));
   write("thesis/chapter1.tex", "precious");
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
-  expect_refused({"sweep", "plan", "study.toml", "-o", "thesis", "--device", "cpu"}, 2,
-                 {"thesis: exists and contains no"});
+  expect_error({"sweep", "plan", "study.toml", "-o", "thesis", "--device", "cpu"}, 2, "output at thesis");
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 namespace gladstone::end_to_end {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -160,11 +159,12 @@ TEST_F(PairOfFrames, AreMeasuredWithinTheLimitThatIsSet) {
   write_frames({.pixels = 96}, {6.0, 0.0});
   Outcome const enough = correlate("v.csv", {"--set", "correlate.max_displacement_px=6.5"});
   EXPECT_EQ(enough.exit_code, 0);
-  EXPECT_THAT(enough.err, Not(HasSubstr("warning")));
+  EXPECT_THAT(warnings_in(nlohmann::json::parse(enough.out)), testing::IsEmpty());
   for (double const u : column_of("v.csv", "u_px")) EXPECT_NEAR(u, 6.0, 0.1);
   Outcome const little = correlate("v.csv", {"--set", "correlate.max_displacement_px=4"});
   EXPECT_EQ(little.exit_code, 1);
-  EXPECT_THAT(little.err, HasSubstr("correlate.max_displacement_px = 4"));
+  EXPECT_THAT(nlohmann::json::parse(little.out)["warnings"].dump(), HasSubstr("correlate.max_displacement_px = 4"));
+  EXPECT_THAT(warnings_in(nlohmann::json::parse(little.out)), testing::Contains(StartsWith("unreliable at ")));
   for (double const u : column_of("v.csv", "u_raw_px")) EXPECT_FALSE(std::abs(u) > 4.0) << u;
 }
 
@@ -174,9 +174,13 @@ TEST_F(PairOfFrames, AreNotMeasuredWithALimitThatIsNone) {
   write("limit.toml", text);
   expect_error({"correlate", "a.tif", "b.tif", "-o", "v.csv", "--config", "limit.toml"}, 2,
                "out_of_range at limit.toml:3:1");
-  for (std::string const value : {"0", "600", "nan", "inf", "all", "[3]"})
-    expect_refused({"correlate", "a.tif", "b.tif", "-o", "v.csv", "--set", "correlate.max_displacement_px=" + value}, 2,
-                   {"correlate.max_displacement_px"});
+  using Wrong = std::pair<std::string, std::string>;
+  for (auto const& [value, code] :
+       {Wrong{"0", "out_of_range"}, Wrong{"600", "out_of_range"}, Wrong{"nan", "out_of_range"},
+        Wrong{"inf", "out_of_range"}, Wrong{"all", "unknown_choice"}, Wrong{"[3]", "wrong_type"}}) {
+    expect_error({"correlate", "a.tif", "b.tif", "-o", "v.csv", "--set", "correlate.max_displacement_px=" + value}, 2,
+                 code + " at --set correlate.max_displacement_px=" + value);
+  }
 }
 
 }  // namespace

@@ -246,42 +246,46 @@ TEST_F(ReconstructedDensity, OfAPartOfAnAxisymmetricFlow) {
   write_foreign_where("inner.csv", [](double x) { return x > 20 && x < 172; });
   EXPECT_LT(error("right.csv", "x=0"), 0.03);
   EXPECT_LT(error("inner.csv", "vertical"), 0.02);
-  expect_refused({"reconstruct", "case", "--vectors", "right.csv", "--axisymmetric", "-o", "d.h5"}, 2, {"axis"});
+  expect_error({"reconstruct", "case", "--vectors", "right.csv", "--axisymmetric", "-o", "d.h5"}, 2,
+               "inconsistent at axis");
 }
 
 TEST_F(ReconstructedDensity, RefusesWhatDeterminesNoDensity) {
   render("case");
   succeed({"correlate", "case"});
-  auto const refused = [&](std::vector<std::string> const& more, int code, std::vector<std::string> const& pieces) {
+  auto const refused = [&](std::vector<std::string> const& more, int exit_code, std::string const& error,
+                           std::vector<std::string> const& values = {}) {
     std::vector<std::string> arguments{"reconstruct", "case", "-o", "density.h5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    expect_refused(arguments, code, pieces);
+    expect_error(arguments, exit_code, error, values);
   };
-  refused({}, 2, {"--reference", "left"});
-  refused({"--reference", "middle"}, 2, {"--reference", "middle"});
-  refused({"--reference", "left:0"}, 2, {"--reference", "left:0"});
-  refused({"--reference", "1,2,3"}, 2, {"--reference", "1,2,3"});
-  refused({"--reference", "90,90,99,99"}, 2, {"reference", "90", "mm"});
-  refused({"--reference", "left", "--axisymmetric"}, 2, {"--reference", "--axisymmetric"});
-  refused({"--reference", "left", "--axis", "x=0"}, 2, {"--axis", "--axisymmetric"});
-  refused({"--axisymmetric", "--axis", "z=0"}, 2, {"--axis", "z=0"});
-  refused({"--axisymmetric", "--axis", "x=70"}, 2, {"axis", "70", "outside the image"});
-  refused({"--axisymmetric", "--axis", "x=3"}, 2, {"not symmetric about the axis at 3 mm", "correct the axis"});
-  refused({"--axisymmetric", "--abel", "tikhonov", "--lambda", "-1"}, 2, {"lambda", "-1"});
-  refused({"--reference", "left", "--overlap", "1"}, 2, {"--overlap"});
-  refused({"--reference", "left", "--deconvolve", "0.5"}, 2, {"--deconvolve", "0.5"});
-  refused({"--reference", "left", "--vectors", "absent.h5"}, 2, {"absent.h5"});
-  expect_refused({"reconstruct", "setup.toml", "--reference", "left", "-o", "density.h5"}, 2, {"--vectors"});
+  refused({}, 2, "invalid_value at --reference", {"left"});
+  refused({"--reference", "middle"}, 2, "invalid_value at --reference", {"middle"});
+  refused({"--reference", "left:0"}, 2, "invalid_value at --reference", {"left:0"});
+  refused({"--reference", "1,2,3"}, 2, "invalid_value at --reference", {"1,2,3"});
+  refused({"--reference", "90,90,99,99"}, 2, "invalid_value at reference", {"90 to 99 mm"});
+  refused({"--reference", "left", "--axisymmetric"}, 2, "invalid_value at --reference", {"--axisymmetric"});
+  refused({"--reference", "left", "--axis", "x=0"}, 2, "invalid_value at --axis", {"--axisymmetric"});
+  refused({"--axisymmetric", "--axis", "z=0"}, 2, "invalid_value at --axis", {"z=0"});
+  refused({"--axisymmetric", "--axis", "x=70"}, 2, "invalid_value at axis", {"70 mm"});
+  refused({"--axisymmetric", "--axis", "x=3"}, 2, "inconsistent at axis", {"3 mm"});
+  refused({"--axisymmetric", "--abel", "tikhonov", "--lambda", "-1"}, 2, "invalid_value at lambda", {"-1"});
+  refused({"--reference", "left", "--overlap", "1"}, 2, "invalid_value at --overlap");
+  refused({"--reference", "left", "--deconvolve", "0.5"}, 2, "invalid_value at --deconvolve", {"0.5"});
+  refused({"--reference", "left", "--vectors", "absent.h5"}, 2, "missing_file at absent.h5");
+  expect_error({"reconstruct", "setup.toml", "--reference", "left", "-o", "density.h5"}, 2,
+               "wrong_format at setup.toml", {"--vectors"});
   succeed({"correlate", "case", "-o", "v.csv"});
-  expect_refused({"reconstruct", "setup.toml", "--vectors", "v.csv", "--reference", "left", "--budget", "-o", "d.h5"},
-                 2, {"--budget"});
-  expect_refused({"reconstruct", "case", "--reference", "left", "-o", "density.txt"}, 2, {".h5"});
-  expect_refused({"reconstruct", "case", "--reference", "left", "-o", "case/truth.h5"}, 2, {"truth.h5"});
+  expect_error({"reconstruct", "setup.toml", "--vectors", "v.csv", "--reference", "left", "--budget", "-o", "d.h5"}, 2,
+               "missing_file at setup.toml", {"--budget"});
+  expect_error({"reconstruct", "case", "--reference", "left", "-o", "density.txt"}, 2, "output at density.txt",
+               {".h5"});
+  expect_error({"reconstruct", "case", "--reference", "left", "-o", "case/truth.h5"}, 2, "output at truth.h5");
 
   write_foreign("none.csv", false);
-  refused({"--reference", "left", "--vectors", "none.csv"}, 1, {"none.csv"});
-  expect_refused({"reconstruct", "setup.toml", "--reference", "left", "--vectors", "none.csv", "-o", "d.h5"}, 1,
-                 {"none.csv"});
+  refused({"--reference", "left", "--vectors", "none.csv"}, 1, "no_valid_vector at none.csv");
+  expect_error({"reconstruct", "setup.toml", "--reference", "left", "--vectors", "none.csv", "-o", "d.h5"}, 1,
+               "no_valid_vector at none.csv");
 }
 
 }  // namespace

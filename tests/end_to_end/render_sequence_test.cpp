@@ -216,7 +216,7 @@ TEST_F(RenderedSequences, OfBosRequireFilesOfOneSize) {
   write("rho_9.nrrd", plane_of_gradient(50, 6));
   expect_error({"render", "setup.toml", "-o", "out"}, 2, "inconsistent at setup.toml:5:1");
   write("rho_9.nrrd", "no field");
-  expect_refused({"render", "setup.toml", "-o", "out"}, 2, {"rho_9.nrrd"});
+  expect_error({"render", "setup.toml", "-o", "out"}, 2, "wrong_format at setup.toml:5:1", {"rho_9.nrrd"});
   write("setup.toml", with(bos_sequence(), "rho_*.nrrd", "rho_8.nrrd\", \"rho_7.nrrd"));
   expect_error({"render", "setup.toml", "-o", "out"}, 2, "missing_file at setup.toml:5:1");
   write("setup.toml", with(bos_sequence(), "rho_*.nrrd", "density_*.nrrd"));
@@ -235,8 +235,9 @@ TEST_F(RenderedSequences, OfBosReportAMistakeOnce) {
     write("setup.toml", text);
     Outcome const outcome = gladstone({"render", "setup.toml", "-o", "out", "--json"});
     EXPECT_EQ(outcome.exit_code, 2) << text;
-    EXPECT_THAT(outcome.err, HasSubstr("sequence.")) << text;
-    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("medium.field.file"))) << text;
+    auto const errors = nlohmann::json::parse(outcome.out)["errors"];
+    ASSERT_EQ(errors.size(), 1u) << outcome.err;
+    EXPECT_THAT(errors[0]["key"].get<std::string>(), testing::StartsWith("sequence.")) << text;
   }
 }
 

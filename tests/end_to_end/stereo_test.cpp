@@ -122,7 +122,8 @@ TEST_F(Stereo, RefusesCamerasThatDoNotOverlap) {
   render("case");
   for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});
   for (char const* dewarp : {"vectors", "images"})
-    expect_refused({"stereo", "case", "--dewarp", dewarp, "-o", "uvw.h5"}, 2, {"case/left", "plane", "--sheet-z"});
+    expect_error({"stereo", "case", "--dewarp", dewarp, "-o", "uvw.h5"}, 2, "undetermined at right",
+                 {"case/left", "--sheet-z"});
   std::filesystem::remove(in("case/right/flow.tif"));
   expect_error({"stereo", "case", "--dewarp", "images", "-o", "uvw.h5"}, 2, "missing_file at flow.tif");
 }
@@ -294,39 +295,40 @@ TEST_F(Stereo, RefusesWhatItCannotCombine) {
   measure(40, "[15.0, -12.0, 10.0]");
   write_calibration("a.h5", "case/left", 1e-3);
   write_calibration("b.h5", "case/right", 1e-3);
-  auto const refused = [&](std::vector<std::string> arguments, std::vector<std::string> const& pieces) {
+  auto const refused = [&](std::vector<std::string> arguments, std::string const& error,
+                           std::vector<std::string> const& values = {}) {
     arguments.insert(arguments.begin(), "stereo");
-    expect_refused(arguments, 2, pieces);
+    expect_error(arguments, 2, error, values);
   };
-  refused({"case/left", "case/right", "-o", "uvw.txt"}, {".h5"});
-  refused({"case/left", "case/right", "-o", "case/left/vectors.h5"}, {"vectors.h5"});
-  refused({"case/left", "case/left", "-o", "uvw.h5"}, {"same direction"});
-  refused({"case/left", "case/right", "--calibration", "b.h5", "a.h5", "-o", "uvw.h5"},
-          {"b.h5", "case/left", "order of the cases"});
-  refused({"case/left/vectors.h5", "case/right/vectors.h5", "-o", "uvw.h5"}, {"--calibration"});
+  refused({"case/left", "case/right", "-o", "uvw.txt"}, "output at uvw.txt", {".h5"});
+  refused({"case/left", "case/right", "-o", "case/left/vectors.h5"}, "output at vectors.h5");
+  refused({"case/left", "case/left", "-o", "uvw.h5"}, "undetermined at left");
+  refused({"case/left", "case/right", "--calibration", "b.h5", "a.h5", "-o", "uvw.h5"}, "inconsistent at b.h5",
+          {"case/left"});
+  refused({"case/left/vectors.h5", "case/right/vectors.h5", "-o", "uvw.h5"}, "wrong_format at vectors.h5",
+          {"--calibration"});
   refused({"case/left", "case/right", "--calibration", "case/left/truth.h5", "case/right/truth.h5", "-o", "uvw.h5"},
-          {"truth.h5: is not a calibration"});
+          "wrong_format at truth.h5");
   refused({"case/left/vectors.h5", "case/right/vectors.h5", "--calibration", "a.h5", "b.h5", "--dewarp", "images", "-o",
            "uvw.h5"},
-          {"--dewarp"});
-  refused({"case/left", "none", "-o", "uvw.h5"}, {"none"});
-  refused({"case/left", "case/right", "--spacing", "-1", "-o", "uvw.h5"}, {"--spacing"});
-  refused({"case/left", "case/right", "--sheet-z", "nan", "-o", "uvw.h5"}, {"--sheet-z"});
-  refused({"case/left", "case/right", "--residual-limit", "-1", "-o", "uvw.h5"}, {"--residual-limit"});
+          "wrong_format at vectors.h5", {"--dewarp"});
+  refused({"case/left", "none", "-o", "uvw.h5"}, "missing_file at none");
+  refused({"case/left", "case/right", "--spacing", "-1", "-o", "uvw.h5"}, "arguments at --spacing");
+  refused({"case/left", "case/right", "--sheet-z", "nan", "-o", "uvw.h5"}, "invalid_value at --sheet-z");
+  refused({"case/left", "case/right", "--residual-limit", "-1", "-o", "uvw.h5"}, "arguments at --residual-limit");
   write("behind.toml", stereo_setup(40, "[15.0, -12.0, 10.0]") + "[[window]]\nposition_mm = [0.0, 0.0, 100.0]\n");
   succeed({"render", "behind.toml", "-o", "behind", "--set", "render.rays_per_dot=4", "--quiet"});
   succeed({"correlate", "behind/left", "--quiet"});
-  refused({"behind/left", "behind/right", "-o", "uvw.h5"}, {"windows", "--calibration"});
-  refused({"behind/left", "behind/right", "--calibration", "a.h5", "b.h5", "-o", "uvw.h5"},
-          {"a.h5", "calibrate through the same windows"});
+  refused({"behind/left", "behind/right", "-o", "uvw.h5"}, "unsupported at left", {"--calibration"});
+  refused({"behind/left", "behind/right", "--calibration", "a.h5", "b.h5", "-o", "uvw.h5"}, "inconsistent at a.h5");
   render("other", {"--set", "particles.seed=2"});
   succeed({"correlate", "other/right", "--quiet"});
-  refused({"case/left", "other/right", "-o", "uvw.h5"}, {"other particles"});
+  refused({"case/left", "other/right", "-o", "uvw.h5"}, "inconsistent at right");
   succeed({"init", "bos", "-o", "bos.toml"});
   succeed({"render", "bos.toml", "-o", "bos", "--set", "camera.pixels=[128, 128]", "--set", "render.rays_per_dot=4",
            "--set", "render.method=rays", "--quiet"});
   succeed({"correlate", "bos", "--quiet"});
-  refused({"case/left", "bos", "-o", "uvw.h5"}, {"bos", "PIV"});
+  refused({"case/left", "bos", "-o", "uvw.h5"}, "wrong_format at bos", {"PIV"});
 }
 
 }  // namespace

@@ -207,9 +207,9 @@ TEST_F(Sweeps, PairsOnlyRendersAndALaterRunMeasures) {
   std::string const image = read("run/cases/7/flow.tif");
   EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--pairs-only"})["computed"], 0);
   EXPECT_THAT(succeed({"sweep", "status", "run"}), HasSubstr("have images only"));
-  Outcome const report = gladstone({"report", "run"});
+  Outcome const report = gladstone({"report", "run", "--json"});
   EXPECT_EQ(report.exit_code, 2);
-  EXPECT_THAT(report.err, HasSubstr("contains no measured case"));
+  expect_error_in(report, "missing_content at run");
   auto const then = json_of({"sweep", "run", "run", "--case", "7", "--keep-images"});
   EXPECT_EQ(then["computed"], 1);
   EXPECT_EQ(then["pairs_only"], 0);
@@ -328,12 +328,14 @@ TEST_F(Sweeps, AFailingCaseIsRecordedAndDoesNotStopTheOthers) {
   plan("run");
   Outcome const ran = gladstone({"sweep", "run", "run"});
   EXPECT_EQ(ran.exit_code, 3);
-  EXPECT_THAT(ran.out, testing::AllOf(HasSubstr("3 done, 1 failed"), HasSubstr("case 3 (camera.pixels = [48, 48]"),
-                                      HasSubstr("a window of 64 px is larger than the image of 48 x 48 px")));
+  EXPECT_THAT(ran.out, testing::AllOf(HasSubstr("3 done"), HasSubstr("1 failed"), HasSubstr("case 3"),
+                                      HasSubstr("camera.pixels = [48, 48]"), HasSubstr("correlate.window_px")));
+  EXPECT_EQ(status("run")["done"], 3);
+  EXPECT_EQ(status("run")["failed"], 1);
   EXPECT_EQ(status("run")["failures"][0]["case"], 3);
   Outcome const collected = gladstone({"sweep", "collect", "run", "--no-figures"});
   EXPECT_EQ(collected.exit_code, 3);
-  EXPECT_THAT(collected.out, HasSubstr("failed: case 3"));
+  EXPECT_THAT(collected.out, HasSubstr("case 3"));
   EXPECT_THAT(read("run/study.csv"), HasSubstr("\n\"[48, 48]\",\"[64, 16]\",3,1,failed,0,nan,"));
 
   auto const before = results("run");
@@ -378,15 +380,21 @@ TEST_F(Sweeps, ACaseThatKillsItsProcessIsRecordedAndDoesNotStopTheOthers) {
   };
   Outcome const outcome = run({"sweep", "run", "run", "--json", "--threads", "2", "--jobs", "2"}, folder_, limited);
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("while computing case 1; another worker tries it once more"),
-                                          HasSubstr("while computing case 1; the case has failed")));
   auto const ran = nlohmann::json::parse(outcome.out, nullptr, false);
   ASSERT_TRUE(ran.is_object()) << outcome.out;
+  auto const& warnings = ran["warning_records"];
+  EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                          [](nlohmann::json const& one) {
+                            return one["code"] == "failed" &&
+                                   one["text"].get<std::string>().find("case 1") != std::string::npos;
+                          }),
+            2)
+      << "a second worker tries it once more: " << warnings;
   EXPECT_EQ(ran["computed"], 4);
   EXPECT_EQ(ran["done"], 3);
   ASSERT_EQ(ran["failed"], 1);
   EXPECT_EQ(ran["failures"][0]["case"], 1);
-  EXPECT_THAT(ran["failures"][0]["error"].get<std::string>(), HasSubstr("its process was ended by signal"));
+  EXPECT_THAT(ran["failures"][0]["error"].get<std::string>(), HasSubstr("signal " + std::to_string(SIGXCPU)));
   EXPECT_EQ(json_of({"sweep", "status", "run"})["failed"], 1);
 }
 
@@ -415,8 +423,7 @@ TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
   }
   Outcome const collected = gladstone({"sweep", "collect", "run", "--no-figures"});
   EXPECT_EQ(collected.exit_code, 3);
-  EXPECT_THAT(collected.out, testing::AllOf(HasSubstr("failed: case 1 (camera.pixels = [2048, 2048]): out of memory"),
-                                            HasSubstr("the next run tries it again")));
+  EXPECT_THAT(collected.out, testing::AllOf(HasSubstr("case 1"), HasSubstr("camera.pixels = [2048, 2048]")));
   EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 1);
   EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 0);
 }
@@ -434,7 +441,7 @@ TEST_F(Sweeps, OversizedImageFailsOnlyItsCase) {
     auto const ran = nlohmann::json::parse(outcome.out, nullptr, false);
     EXPECT_EQ(ran["computed"], attempt == 0 ? 2 : 1);
     EXPECT_EQ(ran["done"], 1);
-    EXPECT_THAT(ran["failures"][0]["error"].get<std::string>(), HasSubstr("GB of memory"));
+    EXPECT_THAT(ran["failures"][0]["error"].get<std::string>(), HasSubstr(" GB"));
     EXPECT_EQ(ran["failures"][0]["again"], true);
   }
 }
@@ -471,10 +478,9 @@ TEST_F(Sweeps, AnInputThatHasChangedStopsTheRun) {
   plan("run");
   succeed({"sweep", "run", "run", "--case", "0", "--quiet"});
   write("dots.csv", dots + "3,3\n");
-  Outcome const outcome = gladstone({"sweep", "run", "run"});
+  Outcome const outcome = gladstone({"sweep", "run", "run", "--json"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err,
-              testing::AllOf(HasSubstr("dots.csv: has changed since the study was planned"), HasSubstr("case 1")));
+  expect_error_in(outcome, "changed at dots.csv", {"case 1"});
   write("dots.csv", dots);
   succeed({"sweep", "run", "run", "--quiet"});
 }
@@ -488,7 +494,6 @@ TEST_F(Sweeps, ControlCKeepsWhatIsFinished) {
     program.send(SIGCONT);
     Outcome const outcome = program.finish(hang_limit);
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
-    EXPECT_THAT(outcome.err, HasSubstr("finished cases are kept"));
     EXPECT_EQ(outcome.out, "");
     EXPECT_GE(status("run" + jobs)["done"], 1);
     EXPECT_EQ(status("run" + jobs)["running"], 0);
@@ -503,9 +508,9 @@ TEST_F(Sweeps, AFullDiskStopsTheRunAndTheNextOneGoesOn) {
     rlimit const limit{2048, 2048};
     return ::setrlimit(RLIMIT_FSIZE, &limit) == 0;
   };
-  Outcome const refused = run({"sweep", "run", "run", "--quiet"}, folder_, limited);
+  Outcome const refused = run({"sweep", "run", "run", "--quiet", "--json"}, folder_, limited);
   EXPECT_EQ(refused.exit_code, 2) << refused.err;
-  EXPECT_THAT(refused.err, HasSubstr("run/cases/0.json: cannot be written"));
+  expect_error_in(refused, "output at 0.json");
   EXPECT_TRUE(names("run/cases").empty());
 
   // a disk with space for some results, in a separate mount namespace
@@ -541,29 +546,28 @@ TEST_F(Sweeps, AFullDiskStopsTheRunAndTheNextOneGoesOn) {
 
 TEST_F(Sweeps, AnotherKindOfDeviceIsRefused) {
   plan("run");
-  expect_refused({"sweep", "run", "run", "--device", "cuda"}, 5, {"the study was planned for cpu"});
+  expect_error({"sweep", "run", "run", "--device", "cuda"}, 5, "device at ", {"--device cuda", "cpu"});
   plan_otherwise("run", "\"device\":\"cpu\"", "\"device\":\"cuda\"");
   auto const without_gpu = [] { return ::setenv("CUDA_VISIBLE_DEVICES", "", 1) == 0; };
   for (std::string const jobs : {"1", "2"}) {
     Outcome const outcome = run({"sweep", "run", "run", "--jobs", jobs}, folder_, without_gpu);
     EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("device error"));
+    EXPECT_THAT(outcome.err, HasSubstr("--device cuda"));
   }
 }
 
 TEST_F(Sweeps, DevicesAreGpusOfThisHost) {
   plan("run");
-  expect_refused({"sweep", "run", "run", "--devices", "all"}, 5,
-                 {"--devices all: the study was planned for cpu and uses no GPU"});
-  expect_refused({"sweep", "run", "run", "--devices", "some"}, 2,
-                 {"--devices", "expected \"all\" or an integer from 1 to 4096, got \"some\""});
-  expect_refused({"sweep", "run", "run", "--devices", "0"}, 2, {"expected \"all\" or an integer"});
+  expect_error({"sweep", "run", "run", "--devices", "all"}, 5, "device at ", {"--devices all", "cpu"});
+  expect_error({"sweep", "run", "run", "--devices", "some"}, 2, "arguments at --devices",
+               {"\"all\"", "1 to 4096", "\"some\""});
+  expect_error({"sweep", "run", "run", "--devices", "0"}, 2, "arguments at --devices", {"\"all\""});
   plan_otherwise("run", "\"device\":\"cpu\"", "\"device\":\"cuda\"");
   auto const without_gpu = [] { return ::setenv("CUDA_VISIBLE_DEVICES", "", 1) == 0; };
   for (std::string const devices : {"all", "1", "2"}) {
-    Outcome const outcome = run({"sweep", "run", "run", "--devices", devices}, folder_, without_gpu);
+    Outcome const outcome = run({"sweep", "run", "run", "--devices", devices, "--json"}, folder_, without_gpu);
     EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("--devices " + devices + ": no GPU can be used on this host"));
+    expect_error_in(outcome, "device at ", {"--devices " + devices});
   }
   EXPECT_EQ(status("run")["missing"], 12);
 }
@@ -572,9 +576,9 @@ TEST_F(Sweeps, DevicesAreGpusOfThisHost) {
 TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
   plan("run");
   succeed({"sweep", "run", "run", "--quiet", "--case", "0"});
-  Outcome const without = gladstone({"sweep", "collect", "run", "--no-figures", "--dataset", "none.h5"});
+  Outcome const without = gladstone({"sweep", "collect", "run", "--no-figures", "--dataset", "none.h5", "--json"});
   EXPECT_EQ(without.exit_code, 2);
-  EXPECT_THAT(without.err, HasSubstr("--keep-images"));
+  expect_error_in(without, "missing_content at run", {"--keep-images"});
   EXPECT_FALSE(std::filesystem::exists(in("none.h5")));
   succeed({"sweep", "run", "run", "--quiet", "--case", "0,7", "--keep-images"});
   EXPECT_EQ(gladstone({"sweep", "collect", "run", "--no-figures", "--dataset", "set.h5"}).exit_code,
@@ -616,17 +620,18 @@ TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
 
 TEST_F(Sweeps, BadCommandLinesAreRefused) {
   plan("run");
-  expect_refused({"sweep"}, 2, {"sweep requires one of plan, run, status, collect"});
-  expect_refused({"sweep", "runn", "other"}, 2, {"unknown command \"runn\"; did you mean \"run\"?"});
-  expect_refused({"sweep", "run", "run", "--shard", "3/3"}, 2, {"--shard: 3/3 is not I/N"});
-  expect_refused({"sweep", "run", "run", "--case", "12"}, 2,
-                 {"--case: 12 is not in the study, which has cases 0 to 11"});
-  expect_refused({"sweep", "run", "run", "--case", ""}, 2, {"--case: \"\" is not a list of cases; write 17, or 0-3,7"});
-  expect_refused({"sweep", "run", "run", "--retry-faild"}, 2, {"--retry-failed"});
+  Outcome const bare = gladstone({"sweep"});
+  EXPECT_EQ(bare.exit_code, 2);
+  for (char const* command : {"plan", "run", "status", "collect"}) EXPECT_THAT(bare.err, HasSubstr(command));
+  expect_error({"sweep", "runn", "other"}, 2, "arguments at runn", {"\"run\""});
+  expect_error({"sweep", "run", "run", "--shard", "3/3"}, 2, "arguments at --shard", {"3/3"});
+  expect_error({"sweep", "run", "run", "--case", "12"}, 2, "arguments at --case", {"12", "0 to 11"});
+  expect_error({"sweep", "run", "run", "--case", ""}, 2, "arguments at --case");
+  expect_error({"sweep", "run", "run", "--retry-faild"}, 2, "arguments at --retry-faild", {"--retry-failed"});
   expect_error({"sweep", "status", "."}, 2, "wrong_format at .");
   expect_error({"sweep", "run", "setup.toml"}, 2, "wrong_format at setup.toml");
-  expect_refused({"sweep", "plan", "nothing.toml", "-o", "other"}, 2, {"nothing.toml: does not exist"});
-  expect_refused({"sweep", "plan", "setup.toml", "-o", "other"}, 2, {"setup.toml: is a setup, not a study"});
+  expect_error({"sweep", "plan", "nothing.toml", "-o", "other"}, 2, "missing_file at nothing.toml");
+  expect_error({"sweep", "plan", "setup.toml", "-o", "other"}, 2, "invalid_value at setup.toml");
   write("other.toml", with(small_study, "[8, 16, 32]", "[8, 16, 64]"));
   succeed({"sweep", "run", "run", "--quiet"});
   expect_error({"sweep", "plan", "other.toml", "-o", "run", "--device", "cpu"}, 2, "output at run");

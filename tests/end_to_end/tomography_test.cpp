@@ -111,22 +111,25 @@ TEST_F(Tomography, WarnsOfAViewThatContradictsTheOthers) {
 }
 
 TEST_F(Tomography, RefusesWhatDeterminesNoVolume) {
-  auto const refused = [&](std::vector<std::string> const& more, std::vector<std::string> const& pieces) {
-    expect_refused(words(more), 2, pieces);
+  auto const refused = [&](std::vector<std::string> const& more, std::string const& error,
+                           std::vector<std::string> const& values = {}) {
+    expect_error(words(more), 2, error, values);
   };
-  refused({}, {"--reference", "is required"});
-  refused({"--reference", "left", "--angles", "0,60"}, {"--angles", "3 views"});
-  refused({"--reference", "left", "--bounds", "100,100,100,110,110,110"}, {"seen by more than 0 views", "--bounds"});
-  refused({"--reference", "left", "--spacing", "50"}, {"--spacing", "50 mm"});
-  refused({"--reference", "90,90,99,99"}, {"90 to 99 mm"});
-  expect_refused({"tomography", "0", "1", "--reference", "left", "-o", "volume.h5"}, 2, {"views", "3 to 16", "got 2"});
-  expect_refused({"tomography", "0", "1", "1", "--reference", "left", "-o", "volume.h5"}, 2, {"the same case twice"});
+  refused({}, "invalid_value at --reference");
+  refused({"--reference", "left", "--angles", "0,60"}, "invalid_value at --angles", {"3 views"});
+  refused({"--reference", "left", "--bounds", "100,100,100,110,110,110"}, "undetermined at tomography",
+          {"0 views", "--bounds"});
+  refused({"--reference", "left", "--spacing", "50"}, "invalid_value at --spacing", {"50 mm"});
+  refused({"--reference", "90,90,99,99"}, "invalid_value at reference", {"90 to 99 mm"});
+  expect_error({"tomography", "0", "1", "--reference", "left", "-o", "volume.h5"}, 2, "invalid_value at views",
+               {"3 to 16", " 2"});
+  expect_error({"tomography", "0", "1", "1", "--reference", "left", "-o", "volume.h5"}, 2, "invalid_value at views");
   write_vectors("0.csv", "0", [](double x) { return x > 20; });
-  expect_refused(
+  expect_error(
       {"tomography", "0", "1", "2", "--vectors", "0.csv", "0.csv", "0.csv", "--reference", "left", "-o", "volume.h5"},
-      2, {"0.csv", "masked or invalid"});
+      2, "undetermined at 0.csv");
   std::filesystem::remove(in("2/vectors.h5"));
-  refused({"--reference", "left"}, {"2/vectors.h5", "gladstone correlate 2"});
+  refused({"--reference", "left"}, "missing_file at vectors.h5", {"gladstone correlate 2"});
   EXPECT_FALSE(std::filesystem::exists(in("volume.h5")));
 }
 

@@ -122,18 +122,18 @@ TEST_F(Trace, ThroughTheOpticsEndsAtTheLens) {
 TEST_F(Trace, ATableOfNoRaysGivesOneOfNone) { EXPECT_TRUE(trace("", "all").empty()); }
 
 TEST_F(Trace, BadRaysAreRefusedWithTheirLine) {
-  auto const refused = [&](std::string const& table, std::string const& piece) {
+  auto const refused = [&](std::string const& table, std::string const& error) {
     write("rays.csv", table);
-    expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "out.csv"}, 2, {piece});
+    expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", "out.csv"}, 2, error);
   };
   std::string const header = "x_mm,y_mm,z_mm,dx,dy,dz\n";
-  refused("x,y,z\n", "rays.csv:1: ");
-  refused(header + "0,0,-250,0,0,1\n0,0,-250,0,0\n", "rays.csv:3: ");
-  refused(header + "0,0,-250,0,0,0\n", "rays.csv:2: ");
-  refused(header + "0,0,nan,0,0,1\n", "rays.csv:2: ");
-  expect_refused({"trace", "setup.toml", "--rays", "nowhere.csv", "-o", "out.csv"}, 2, {"nowhere.csv: does not exist"});
+  refused("x,y,z\n", "wrong_format at rays.csv:1");
+  refused(header + "0,0,-250,0,0,1\n0,0,-250,0,0\n", "syntax at rays.csv:3");
+  refused(header + "0,0,-250,0,0,0\n", "syntax at rays.csv:2");
+  refused(header + "0,0,nan,0,0,1\n", "syntax at rays.csv:2");
+  expect_error({"trace", "setup.toml", "--rays", "nowhere.csv", "-o", "out.csv"}, 2, "missing_file at nowhere.csv");
   std::filesystem::create_directory(in("folder"));
-  expect_refused({"trace", "setup.toml", "--rays", "folder", "-o", "out.csv"}, 2, {"folder: is a folder"});
+  expect_error({"trace", "setup.toml", "--rays", "folder", "-o", "out.csv"}, 2, "unreadable_file at folder");
 }
 
 // Far outside a set-up of 1000 mm from the dots to the lens there is nothing to trace.

@@ -116,18 +116,26 @@ TEST_F(TrackedDots, ServeEveryCommandThatReadsVectors) {
 }
 
 TEST_F(TrackedDots, NeedValidKeys) {
-  auto const refused = [&](std::string const& tables, std::vector<std::string> const& pieces) {
-    expect_setup_refused(std::string(small_setup) + tables, pieces);
+  auto const refused = [&](std::string const& tables, std::string const& error,
+                           std::vector<std::string> const& values = {}) {
+    expect_setup_error(std::string(small_setup) + tables, error, values);
   };
   std::string const tracking = "method = \"tracking\"\n";
-  refused(tracking + "[correlate.tracking]\npolarity = \"grey\"", {"polarity", "\"bright\""});
-  refused(tracking + "[correlate.tracking]\nshape = \"square\"", {"shape", "\"elliptic\""});
-  refused(tracking + "[correlate.tracking]\noutput = \"cells\"", {"output", "\"scattered\""});
-  refused(tracking + "[correlate.tracking]\ndiameter = 3", {"diameter", "diameter_px"});
-  refused(tracking + "[correlate.tracking]\ndiameter_px = 0", {"diameter_px"});
-  refused(tracking + "[correlate.tracking]\nsearch_radius_px = -1", {"search_radius_px"});
-  refused(tracking + "[correlate.tracking]\ndisplacement_bound_px = 0", {"displacement_bound_px"});
-  refused(tracking + "uncertainty = \"peak_ratio\"", {"uncertainty", "conflicts with method = \"tracking\""});
+  refused(tracking + "[correlate.tracking]\npolarity = \"grey\"", "unknown_choice at setup.toml:32:1",
+          {"polarity", "\"bright\""});
+  refused(tracking + "[correlate.tracking]\nshape = \"square\"", "unknown_choice at setup.toml:32:1",
+          {"shape", "\"elliptic\""});
+  refused(tracking + "[correlate.tracking]\noutput = \"cells\"", "unknown_choice at setup.toml:32:1",
+          {"output", "\"scattered\""});
+  refused(tracking + "[correlate.tracking]\ndiameter = 3", "unknown_key at setup.toml:32:1",
+          {"\"diameter\"", "diameter_px"});
+  refused(tracking + "[correlate.tracking]\ndiameter_px = 0", "out_of_range at setup.toml:32:1", {"diameter_px"});
+  refused(tracking + "[correlate.tracking]\nsearch_radius_px = -1", "out_of_range at setup.toml:32:1",
+          {"search_radius_px"});
+  refused(tracking + "[correlate.tracking]\ndisplacement_bound_px = 0", "out_of_range at setup.toml:32:1",
+          {"displacement_bound_px"});
+  refused(tracking + "uncertainty = \"peak_ratio\"", "invalid_value at setup.toml:31:1",
+          {"uncertainty", "method = \"tracking\""});
 }
 
 TEST_F(TrackedDots, AreMissingFromFlatFrames) {

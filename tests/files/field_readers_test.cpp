@@ -198,7 +198,7 @@ TEST_F(JhtdbField, AxesThatAreNotUniformAreResampledAndBackwardOnesTurned) {
   stretched.values[1] = 1.001;
   auto const resampled = open_field(write({density(), x, stretched, z}), "");
   ASSERT_EQ(resampled->notes().size(), 1u);
-  EXPECT_THAT(resampled->notes()[0], Warns("approximated", HasSubstr("0.999 to 1.001) to 4 nodes")));
+  EXPECT_THAT(resampled->notes()[0], Warns("approximated", AllOf(HasSubstr("0.999 to 1.001"), HasSubstr("4 nodes"))));
   auto const turned = open_field(write({density(), axis("xcoor", 4, 3.0, -1.0)}), "");
   EXPECT_EQ(turned->reading().turned_round, "x");
   EXPECT_EQ(turned->grid().origin.x, 0.0);
@@ -233,7 +233,7 @@ TEST_F(JhtdbField, CoordinatesThatDoNotFitAreRefused) {
       [&] {
         open_field(write({density(), axis("zcoor", 3, 0.0, 1.0)}), "");
       },
-      ThrowsDataError(ErrorCode::undetermined, "cutout.h5", HasSubstr("axes = \"xzy\" or \"yzx\"")));
+      ThrowsDataError(ErrorCode::undetermined, "cutout.h5", AllOf(HasSubstr("\"xzy\""), HasSubstr("\"yzx\""))));
   auto const named = open_field(write({density(), axis("zcoor", 3, 0.0, 1.0)}), "", 1, "xzy");
   EXPECT_THAT(named->grid().nodes, ElementsAre(2, 4, 3));
 }
@@ -391,7 +391,7 @@ TEST_F(JhtdbField, PackedValuesAreUnpackedAndFillValuesRefused) {
   values[5] = -32767;
   values[6] = static_cast<float>(1e20);  // the value has fewer digits than the attribute
   EXPECT_THAT([&] { read_all(*packed(values)); },
-              ThrowsDataError(ErrorCode::invalid_value, "packed.nc", HasSubstr("2 of 24 points")));
+              ThrowsDataError(ErrorCode::invalid_value, "packed.nc", HasSubstr("2 of 24")));
 }
 
 /// Writes the attribute of the HDF5 Dimension Scale Specification, as H5DSset_label() does.
@@ -482,7 +482,7 @@ TEST_F(JhtdbField, HolesAreCountedOverTheWholeField) {
   std::vector<double> plane(12);
   EXPECT_NO_THROW(source->read_planes(1, 1, plane));  // nodes 12 to 23 are valid
   EXPECT_THAT([&] { source->read_planes(0, 1, plane); },
-              ThrowsDataError(ErrorCode::invalid_value, "cutout.h5", HasSubstr("3 of 60 points")));
+              ThrowsDataError(ErrorCode::invalid_value, "cutout.h5", HasSubstr("3 of 60")));
 }
 
 TEST_F(JhtdbField, NanAndInfinityAreRefused) {
@@ -491,8 +491,7 @@ TEST_F(JhtdbField, NanAndInfinityAreRefused) {
   field.values[4] = std::numeric_limits<double>::infinity();
   field.values[5] = 1e300;  // infinite as a float
   auto const source = open_field(write({field}), "");
-  EXPECT_THAT([&] { read_all(*source); },
-              ThrowsDataError(ErrorCode::invalid_value, "cutout.h5", HasSubstr("3 of 24 points")));
+  EXPECT_THAT([&] { read_all(*source); }, ThrowsDataError(ErrorCode::invalid_value, "cutout.h5", HasSubstr("3 of 24")));
 }
 
 // The index of air differs from 1 by 2.7e-4: the variations that determine the gradient are beyond the seventh digit,
@@ -552,7 +551,7 @@ TEST_F(JhtdbField, SeveralFieldsAskForAName) {
   EXPECT_THAT([&] { open_field(path, ""); },
               ThrowsDataError(ErrorCode::undetermined, "cutout.h5", HasSubstr("\"Density_0001\" or \"Density_0002\"")));
   EXPECT_THAT([&] { open_field(path, "Density_001"); },
-              ThrowsDataError(ErrorCode::missing_content, "cutout.h5", HasSubstr("did you mean \"Density_0001\"?")));
+              ThrowsDataError(ErrorCode::missing_content, "cutout.h5", HasSubstr("\"Density_0001\"")));
 }
 
 TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
@@ -819,7 +818,7 @@ TEST_F(NrrdField, NanAndHolesAreRefused) {
   std::string const path = write("a.nrrd", header(std::string(grid_432) + "type: float\nendian: big\nencoding: raw\n") +
                                                "\n" + bytes<float>(values, true));
   EXPECT_THAT([&] { read_all(*open_field(path, "")); },
-              ThrowsDataError(ErrorCode::invalid_value, "a.nrrd", HasSubstr("1 of 24 points")));
+              ThrowsDataError(ErrorCode::invalid_value, "a.nrrd", HasSubstr("1 of 24")));
 }
 
 TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {

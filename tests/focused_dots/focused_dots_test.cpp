@@ -39,7 +39,8 @@ TEST(Memory, OfATableCountsBesideImagesFieldAndDots) {
   auto setup = table1_setup(1000000);
   setup.medium.field = sinusoid(0.1, 4e-3);
   EXPECT_THAT([&] { check_memory(setup, FieldMemory::needed, focused_dots_memory(setup)); },
-              ThrowsDataError(ErrorCode::memory, "", testing::HasSubstr("table of deflections 2)")));
+              ThrowsDataError(ErrorCode::memory, "",
+                              testing::HasSubstr(focused_dots_memory(setup).front().what + std::string(" 2)"))));
 }
 
 // The estimated size of a table counts nodes by area; the table itself has integer numbers of rows and columns, up to

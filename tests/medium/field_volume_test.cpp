@@ -205,7 +205,8 @@ TEST_F(FieldVolume, RefractiveIndexInFloatIsWarnedOf) {
   auto const warnings = build_medium(setup).warnings;
   ASSERT_EQ(warnings.size(), 1u);
   // an ulp of 1.00027 is 2^-23 = 1.2e-7, 4 % of the range of 3e-6
-  EXPECT_THAT(warnings[0], Warns("low_accuracy at medium.field.quantity", testing::HasSubstr("1.2e-07, 4 %")));
+  EXPECT_THAT(warnings[0], Warns("low_accuracy at medium.field.quantity",
+                                 testing::AllOf(testing::HasSubstr("1.2e-07"), testing::HasSubstr("4 %"))));
   setup.field.quantity = FieldQuantity::density;
   setup.field.scale = 1.2;  // without the scale, a density of 1.00027 would cause another warning, see below
   EXPECT_TRUE(build_medium(setup).warnings.empty()) << "a density in float is accurate enough";
@@ -223,19 +224,19 @@ TEST_F(FieldVolume, ValuesOfAnotherQuantityAreAskedAbout) {
   };
   using testing::Contains, testing::HasSubstr, testing::IsEmpty;
   EXPECT_THAT(warnings(2.7e-4, FieldQuantity::density),
-              Contains(Warns("implausible at medium.field.quantity", HasSubstr("set quantity = \"refractivity\""))));
+              Contains(Warns("implausible at medium.field.quantity", HasSubstr("quantity = \"refractivity\""))));
   EXPECT_THAT(warnings(1.2e-3, FieldQuantity::density),
-              Contains(Warns("implausible at medium.field.quantity", HasSubstr("set scale = 1000"))));
+              Contains(Warns("implausible at medium.field.quantity", HasSubstr("scale = 1000"))));
   EXPECT_THAT(warnings(1.2e-3, FieldQuantity::density, 1000), IsEmpty());
   EXPECT_THAT(warnings(1.2, FieldQuantity::refractivity),
-              Contains(Warns("implausible at medium.field.quantity", HasSubstr("set quantity = \"density\""))));
+              Contains(Warns("implausible at medium.field.quantity", HasSubstr("quantity = \"density\""))));
   EXPECT_THAT(warnings(2.7e-4, FieldQuantity::refractivity), IsEmpty());
   EXPECT_THAT(warnings(1.2, FieldQuantity::density), IsEmpty());
   EXPECT_THAT(warnings(0.2, FieldQuantity::density), IsEmpty()) << "a hot gas";
   auto index = file_setup(4, 4, 4, [](int i, int, int) { return 1.00027 + 1e-6 * i; });
   index.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
-  EXPECT_THAT(build_medium(index).warnings, Contains(Warns("implausible at medium.field.quantity",
-                                                           HasSubstr("set quantity = \"refractive_index\""))));
+  EXPECT_THAT(build_medium(index).warnings,
+              Contains(Warns("implausible at medium.field.quantity", HasSubstr("quantity = \"refractive_index\""))));
 }
 
 TEST_F(FieldVolume, AxesAreThoseOfTheKey) {

@@ -161,10 +161,9 @@ TEST(GlassCatalogue, ANameOfDifferentGlassesIsNoted) {
   EXPECT_THAT(catalogue.match("Y", 5e-7, "here").notes, testing::IsEmpty());  // both indices agree to 1e-4
   // two glasses of one name in one catalogue are distinguished by their lines
   catalogue.add("NM Z 1\nCD 2.25\nLD 0.4 0.7\nNM Z 1\nCD 2.56\nLD 0.4 0.7\n", "TWICE", "twice.agf");
-  EXPECT_THAT(
-      catalogue.match("Z", 5e-7, "here").notes,
-      testing::ElementsAre(Warns("assumed at here", AllOf(HasSubstr("TWICE:Z (twice.agf:1), TWICE:Z (twice.agf:4)"),
-                                                          HasSubstr("TWICE:Z (twice.agf:1) is taken")))));
+  EXPECT_THAT(catalogue.match("Z", 5e-7, "here").notes,
+              testing::ElementsAre(Warns(
+                  "assumed at here", AllOf(HasSubstr("TWICE:Z (twice.agf:1)"), HasSubstr("TWICE:Z (twice.agf:4)")))));
   EXPECT_NEAR(catalogue.match("TWO:X", 5e-7, "here").glass->index(5e-7), 1.6, 1e-15);
   EXPECT_NEAR(catalogue.match("X_ONE", 5e-7, "here").glass->index(5e-7), 1.5, 1e-15);
 }

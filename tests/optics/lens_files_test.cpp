@@ -121,8 +121,8 @@ TEST(LensFiles, WarningsOfGlassesNameTheLineOfEachGlass) {
               Contains(Warns("approximated at object_in_water.zmx:16", HasSubstr("nd 1.33300, Vd 55.80"))));
   std::string const water = changed(changed(seq, "SO 0.0 1e13", "SO 0.0 1e13 1.333:55.8"), "NBK7_SCHOTT", "517642");
   EXPECT_THAT(lens_of_text("water.seq", changed(water, "STO;", "STO;\n GLA 1.62:60.3;")).warnings,
-              Contains(Warns("approximated at water.seq:7",
-                             HasSubstr("nd 1.33300, Vd 55.80 (line 7); nd 1.62000, Vd 60.30 (line 10)"))));
+              Contains(Warns("approximated at water.seq:7", AllOf(HasSubstr("nd 1.33300, Vd 55.80 (line 7)"),
+                                                                  HasSubstr("nd 1.62000, Vd 60.30 (line 10)")))));
 }
 
 // 1.5 and 40 are Zemax's default values for unknown nd and Vd; they do not describe a glass.
@@ -666,7 +666,7 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
       {"ARO", on_stop("REX 1; REY 2; ARO 45"), warnings_with("ARO"), 1},
       {"ARO 0", on_stop("REX 1; REY 2; ARO 0"), warnings_with("ARO"), 0},
       {"ZOO", with("REF 2", "REF 2\nZOO 3"), warnings_with("ZOO"), 1},
-      {"VUX", with("REF 2", "REF 2\nVUX 0.1 0"), warnings_with("VUX: vignetting factors"), 1},
+      {"VUX", with("REF 2", "REF 2\nVUX 0.1 0"), warnings_with("VUX"), 1},
       {"VUX 0", with("REF 2", "REF 2\nVUX 0 0"), warnings_with("VUX"), 0},
       {"K", with("STO;", "STO; K -0.5;"), [](Lens const& lens) { return sag_of_first_surface(lens, 4); },
        0.02 * 16 / (1 + std::sqrt(1 - 0.5 * 0.02 * 0.02 * 16))},

@@ -37,7 +37,7 @@ TEST(FieldCoverage, IsTheShareOfTheViewAtTheField) {
 
 TEST(FieldCoverage, WarnsOfAFieldThatFillsLittle) {
   EXPECT_THAT(field_coverage(box(9e-3, 11e-3), table1_setup(512)).warning(),
-              Optional(Warns("implausible at medium.field", HasSubstr("9.2 % of the 32.73 x 32.73 mm"))));
+              Optional(Warns("implausible at medium.field", AllOf(HasSubstr("9.2 %"), HasSubstr("32.73 x 32.73 mm")))));
   EXPECT_THAT(field_coverage(box(32e-3, 32e-3, {0.1, 0}), table1_setup(512)).warning(),
               Optional(Warns("implausible at medium.field", HasSubstr(" 0 %"))));
 }
@@ -45,9 +45,9 @@ TEST(FieldCoverage, WarnsOfAFieldThatFillsLittle) {
 // Lengths in metres or micrometres that are read as millimetres.
 TEST(FieldCoverage, NamesTheUnitThatWouldFit) {
   EXPECT_THAT(field_coverage(box(32e-6, 32e-6), table1_setup(512)).warning(),
-              Optional(Warns("implausible at medium.field", HasSubstr("in metres, it would be 32 x 32 mm"))));
+              Optional(Warns("implausible at medium.field", AllOf(HasSubstr("metres"), HasSubstr("32 x 32 mm")))));
   EXPECT_THAT(field_coverage(box(32, 32), table1_setup(512)).warning(),
-              Optional(Warns("implausible at medium.field", HasSubstr("in um, it would be 32 x 32 mm"))));
+              Optional(Warns("implausible at medium.field", AllOf(HasSubstr(" um"), HasSubstr("32 x 32 mm")))));
   EXPECT_FALSE(field_coverage(box(1, 1), table1_setup(512)).warning()) << "a large field is plausible";
 }
 

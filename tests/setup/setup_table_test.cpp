@@ -382,7 +382,7 @@ TEST(SetupOverride, KeysAndValuesAreBoundedInDepth) {
   setup.root().text("b", "");  // text that is not TOML is read as a string
   auto const found = messages(setup);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_THAT(found[0], HasSubstr("100000 parts"));
+  EXPECT_THAT(found[0], HasSubstr("100000"));
   EXPECT_LT(found[0].size(), 400u);
 }
 

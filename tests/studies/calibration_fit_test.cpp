@@ -86,7 +86,8 @@ TEST(CalibrationFit, RefusesACameraOfUnequalFocalLengthsFromGuessedMiddleDots) {
   double const oblique = 20 * pi / 180;
   PlateDots const dots = dots_of_plate({40 * pi / 180, {0, std::sin(oblique), std::cos(oblique)}, {-2, 0, 2}});
   EXPECT_THAT([&] { fitted(dots); },
-              ThrowsDataError(ErrorCode::inconsistent, "", testing::HasSubstr("plane0.tif, plane2.tif")));
+              ThrowsDataError(ErrorCode::inconsistent, "",
+                              testing::AllOf(testing::HasSubstr("plane0.tif"), testing::HasSubstr("plane2.tif"))));
   EXPECT_THAT(fitted(dots, CentreDotMethod::whole_grid).warnings,
               testing::Contains(Warns("implausible", testing::HasSubstr("fy"))))
       << "if every image shows the whole grid, the plate's motion must be wrong";

@@ -155,7 +155,7 @@ TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
   auto const with_file = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
   CaseResult const blank = one.run(with_file[0]);  // two dots in total: no window has three
   EXPECT_EQ(blank.status, CaseStatus::failed);
-  EXPECT_THAT(blank.error, testing::HasSubstr("no vector that can be compared"));
+  EXPECT_THAT(blank.error, testing::StartsWith("case 0: "));
   write("dots.csv", "x_mm,y_mm\n0,0\n0.2,0.2\n1,1\n");
   EXPECT_THROW(one.run(with_file[0]), DataError);
   std::filesystem::remove(in("dots.csv"));
@@ -193,8 +193,7 @@ TEST_F(CaseRunners, AnyErrorOfACaseIsItsResultButNotThatOfADevice) {
   fail = [] { throw std::runtime_error("something odd"); };
   CaseResult const odd = one.run(cases[0]);
   EXPECT_EQ(odd.status, CaseStatus::failed);
-  EXPECT_THAT(odd.error, testing::AllOf(testing::StartsWith("internal error of gladstone or of a library"),
-                                        testing::HasSubstr("(something odd)")));
+  EXPECT_THAT(odd.error, testing::HasSubstr("something odd"));
   EXPECT_FALSE(odd.again);
   ManifestCase elsewhere = cases[0];
   elsewhere.device = "cuda";

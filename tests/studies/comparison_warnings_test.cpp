@@ -28,10 +28,10 @@ Warnings warnings_of(double displacement_px, double error_px, Setup const& setup
 TEST(ComparisonWarnings, WarnOfUnmeasurableSignal) {
   EXPECT_THAT(warnings_of(0.5, 0.01), IsEmpty());
   EXPECT_THAT(warnings_of(0.004, 0.001),
-              ElementsAre(Warns("unreliable", HasSubstr("0.004 px rms per component, below 0.01 px"))));
+              ElementsAre(Warns("unreliable", testing::AllOf(HasSubstr("0.004 px"), HasSubstr("0.01 px")))));
   EXPECT_THAT(warnings_of(0.05, 0.1),
-              ElementsAre(Warns("unreliable", testing::AllOf(HasSubstr("0.05 px rms per component"),
-                                                             HasSubstr("is 0.071 px"), HasSubstr("z_d_mm")))));
+              ElementsAre(Warns("unreliable",
+                                testing::AllOf(HasSubstr("0.05 px"), HasSubstr("0.071 px"), HasSubstr("z_d_mm")))));
   EXPECT_THAT(warnings_of(0, 0.001), IsEmpty()) << "the true displacement is zero";
 }
 

@@ -61,23 +61,27 @@ TEST(CorrelationSettings, HaveWordsForNoLimit) {
 }
 
 TEST(CorrelationSettings, RefusesUnknownNamesAndWhatCannotBe) {
-  for (auto const& [text, why] :
-       std::vector<std::pair<std::string, std::string>>{{"method = \"rcp\"", "rpc"},
-                                                        {"method = \"rcp\"", "\"zncc\""},
-                                                        {"subpixel = \"gauss\"", "\"gauss2d\""},
-                                                        {"least_peak_ratio = 0.5", "1"},
-                                                        {"least_correlation = 2", "1"},
-                                                        {"window_px = [33]", "odd"},
-                                                        {"window_px = [16, 32]", "large to small"},
-                                                        {"overlap = 0.99", "overlap"},
-                                                        {"max_displacement_px = 0", "greater than 0 and at most 512"},
-                                                        {"max_displacement_px = -3", "greater than 0"},
-                                                        {"max_displacement_px = 512.5", "at most 512"},
-                                                        {"max_displacement_px = nan", "nan"},
-                                                        {"max_displacement_px = inf", "finite"},
-                                                        {"max_displacement_px = \"all\"", "\"none\""},
-                                                        {"max_displacement_px = true", "number or \"none\""},
-                                                        {"trusted_peak_ratio = 0.9", "1"}}) {
+  struct Wrong {
+    std::string text;
+    ErrorCode code;
+    std::string value;  ///< name or limit in the message
+  };
+  for (auto const& [text, code, value] : {Wrong{"method = \"rcp\"", ErrorCode::unknown_choice, "\"rpc\""},
+                                          Wrong{"method = \"rcp\"", ErrorCode::unknown_choice, "\"zncc\""},
+                                          Wrong{"subpixel = \"gauss\"", ErrorCode::unknown_choice, "\"gauss2d\""},
+                                          Wrong{"least_peak_ratio = 0.5", ErrorCode::out_of_range, " 1"},
+                                          Wrong{"least_correlation = 2", ErrorCode::out_of_range, " 1"},
+                                          Wrong{"window_px = [33]", ErrorCode::invalid_value, "window_px"},
+                                          Wrong{"window_px = [16, 32]", ErrorCode::invalid_value, "window_px"},
+                                          Wrong{"overlap = 0.99", ErrorCode::out_of_range, "overlap"},
+                                          Wrong{"max_displacement_px = 0", ErrorCode::out_of_range, "512"},
+                                          Wrong{"max_displacement_px = -3", ErrorCode::out_of_range, "512"},
+                                          Wrong{"max_displacement_px = 512.5", ErrorCode::out_of_range, "512"},
+                                          Wrong{"max_displacement_px = nan", ErrorCode::wrong_type, "nan"},
+                                          Wrong{"max_displacement_px = inf", ErrorCode::out_of_range, "inf"},
+                                          Wrong{"max_displacement_px = \"all\"", ErrorCode::unknown_choice, "\"none\""},
+                                          Wrong{"max_displacement_px = true", ErrorCode::wrong_type, "\"none\""},
+                                          Wrong{"trusted_peak_ratio = 0.9", ErrorCode::out_of_range, " 1"}}) {
     SetupDocument document = SetupDocument::from_text("[correlate]\n" + text + "\n", "case.toml");
     read_correlation_settings(document.root().table("correlate"));
     try {
@@ -85,7 +89,8 @@ TEST(CorrelationSettings, RefusesUnknownNamesAndWhatCannotBe) {
       ADD_FAILURE() << text;
     } catch (SetupError const& error) {
       ASSERT_EQ(error.problems().size(), 1u) << text;
-      EXPECT_NE(error.problems()[0].message.find(why), std::string::npos) << error.problems()[0].message;
+      EXPECT_EQ(error.problems()[0].code, code) << text;
+      EXPECT_NE(error.problems()[0].message.find(value), std::string::npos) << error.problems()[0].message;
       EXPECT_EQ(error.problems()[0].where.substr(0, 12), "case.toml:2:") << error.problems()[0].where;
     }
   }

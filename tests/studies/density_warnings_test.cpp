@@ -60,7 +60,7 @@ TEST(DisplacementGradient, IsWarnedOf) {
   for (Vec2d& gradient : map.gradient) gradient = factor * gradient;
   warn_of_displacement_gradient(result, map, optics());
   ASSERT_EQ(result.warnings.size(), 1u);
-  EXPECT_THAT(result.warnings.front(), Warns("low_accuracy at geometry.z_d_mm", testing::HasSubstr("0.02 px per px")));
+  EXPECT_THAT(result.warnings.front(), Warns("low_accuracy at geometry.z_d_mm", testing::HasSubstr("0.02 px")));
 }
 
 // Without a difference between neighbours nothing is known of the gradient.

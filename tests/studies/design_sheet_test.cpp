@@ -133,8 +133,8 @@ TEST(DesignSheet, LightLimitsTheStop) {
   double const floor = dim["f_number_floor"], missing = std::pow(floor / 11, 2);
   EXPECT_GT(missing, 1.1);
   EXPECT_THAT(dim.row("f_number_floor").note,
-              testing::HasSubstr("no f-number satisfies all limits: the largest, f/11, has a cone of 2.386 mm"));
-  EXPECT_THAT(dim.row("f_number_floor").note, testing::HasSubstr(fmt::format("{:.3g} times the light", missing)));
+              testing::AllOf(testing::HasSubstr("f/11"), testing::HasSubstr("2.386 mm")));
+  EXPECT_THAT(dim.row("f_number_floor").note, testing::HasSubstr(fmt::format("{:.3g}", missing)));
   DesignSheet const automatic = sheet_of(sheet_setup)->sheet;
   EXPECT_TRUE(std::none_of(automatic.rows.begin(), automatic.rows.end(), [](ResultRow const& row) {
     return row.key == "f_number_light";
@@ -150,14 +150,12 @@ TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
   std::string const noise = "[camera.noise]\nfull_well_e = 10000\n";
   ResultRow const within = row(noise);
   EXPECT_EQ(within.margin, Margin::green);
-  EXPECT_THAT(within.note, testing::Not(testing::HasSubstr("beyond")));
-  for (auto const& [more, what] :
-       {std::pair<std::string, char const*>{"", "noise below 0.6 %"},
-        {noise + "[lens]\nf_number = 45\n", "spots above 0.8 px"},
-        {noise + "[target]\ndots_per_32px_window = 8\n", "a number of dots below 5 in a window"}}) {
-    EXPECT_EQ(row(more).margin, Margin::marginal) << what;
-    EXPECT_THAT(row(more).note,
-                testing::AllOf(testing::HasSubstr("outside the range of the study: "), testing::HasSubstr(what)));
+  for (auto const& [more, limit] : {std::pair<std::string, char const*>{"", "0.6 %"},
+                                    {noise + "[lens]\nf_number = 45\n", "0.8 px"},
+                                    {noise + "[target]\ndots_per_32px_window = 8\n", " 5 "}}) {
+    EXPECT_EQ(row(more).margin, Margin::marginal) << limit;
+    EXPECT_THAT(row(more).note, testing::HasSubstr(limit));
+    EXPECT_THAT(within.note, testing::Not(testing::HasSubstr(limit)));
   }
 }
 

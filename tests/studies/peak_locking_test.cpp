@@ -65,7 +65,7 @@ TEST(PeakLocking, RecommendsApertureAndFocus) {
   gladstone::Setup const setup = setup_of(one_lens_setup("f_number = 8.0", 5.742));
   EXPECT_NEAR(expected_images(setup).diameter_px(), 1.45, 1e-3);
   std::string const advice = advice_text(setup);
-  EXPECT_THAT(advice, HasSubstr("particle images are 1.45 px wide (e^-2 diameter): below 2 px"));
+  EXPECT_THAT(advice, AllOf(HasSubstr("1.45 px"), HasSubstr("2 px")));
   double const factor = expected_images(setup).f_number_factor(2);
   // std::to_string rounds the f-number to 5e-7, and the diameter with it to 5e-7 of 2 px in 11: 1e-7
   EXPECT_NEAR(
@@ -113,10 +113,10 @@ TEST(PeakLocking, OfDotsCountsTheSpotThatIsDrawn) {
   auto const advice = [](std::string const& psf) {
     return advice_text(setup_of("schema = 1\n[lens]\npsf = \"" + psf + "\"\n[target]\ndot_diameter_px = 1\n"));
   };
-  EXPECT_THAT(advice("airy"), HasSubstr("1.49 px wide"));
-  EXPECT_THAT(advice("gaussian_first_zero"), HasSubstr("1.88 px wide"));
+  EXPECT_THAT(advice("airy"), HasSubstr("1.49 px"));
+  EXPECT_THAT(advice("gaussian_first_zero"), HasSubstr("1.88 px"));
   EXPECT_EQ(advice("seed_eq8"), "") << "5.01 px";
-  EXPECT_THAT(advice("none"), HasSubstr("1.00 px wide"));
+  EXPECT_THAT(advice("none"), HasSubstr("1.00 px"));
 }
 
 // The warning of a setup is one of the warnings of its rendering, once and with its remedies.

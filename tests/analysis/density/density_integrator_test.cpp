@@ -135,7 +135,8 @@ TEST(DensityIntegrator, DemandsAReferenceInEachDisconnectedRegion) {
   for (int row = 0; row < 11; ++row) map.valid[map.grid.index(4, row)] = 0;
   ReferenceDensity const left = make_side_reference(map.grid, GridSide::left, 0.0);
   EXPECT_THAT([&] { integrate_density(map, left); },
-              ThrowsDataError(ErrorCode::undetermined, "reference", testing::HasSubstr("66 nodes in columns 5-10")));
+              ThrowsDataError(ErrorCode::undetermined, "reference",
+                              testing::AllOf(testing::HasSubstr("66"), testing::HasSubstr("5-10"))));
   IntegrationSettings settings;
   settings.unreferenced = UnreferencedRegions::leave_out;
   DensityMap const half = integrate_density(map, left, settings);

@@ -112,30 +112,27 @@ class ProgramFixture : public FolderFixture {
     return found;
   }
 
-  /// Expects the command to fail with this exit code and a message that contains each of these texts, with an empty
-  /// stdout (with --json: its errors) and without any change of a file.
-  void expect_refused(std::vector<std::string> const& arguments, int code,
-                      std::vector<std::string> const& pieces) const {
-    auto const before = everything();
-    Outcome const outcome = gladstone(arguments);
-    EXPECT_EQ(outcome.exit_code, code) << outcome.err << " (signal " << outcome.signal << ')';
-    for (auto const& piece : pieces) EXPECT_THAT(outcome.err, testing::HasSubstr(piece));
-    if (std::find(arguments.begin(), arguments.end(), "--json") == arguments.end()) {
-      EXPECT_EQ(outcome.out, "");
-    } else {
-      EXPECT_TRUE(nlohmann::json::parse(outcome.out, nullptr, false).contains("errors")) << outcome.out;
-    }
-    EXPECT_TRUE(everything() == before) << "files changed: " << testing::PrintToString(names());
-  }
   /// Expects the command to fail with this exit code and an error of this code and place, and to change no file.
   /// @param error  "syntax at v.csv:3": code, and name of the file without its folders, with line and column if known
-  void expect_error(std::vector<std::string> arguments, int exit_code, std::string const& error) const {
+  /// @param values  names and numbers that the message contains; its wording is free
+  void expect_error(std::vector<std::string> arguments, int exit_code, std::string const& error,
+                    std::vector<std::string> const& values = {}) const {
     auto const before = everything();
     arguments.emplace_back("--json");
     Outcome const outcome = gladstone(std::move(arguments));
     EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err << " (signal " << outcome.signal << ')';
-    EXPECT_THAT(errors_in(outcome.out), testing::Contains(error)) << outcome.err;
+    expect_error_in(outcome, error, values);
     EXPECT_TRUE(everything() == before) << "files changed: " << testing::PrintToString(names());
+  }
+  /// Expects the output of a command with --json to contain an error of this code and place; see expect_error().
+  static void expect_error_in(Outcome const& outcome, std::string const& error,
+                              std::vector<std::string> const& values = {}) {
+    auto const errors = errors_in(outcome.out);
+    EXPECT_THAT(errors, testing::Contains(error)) << outcome.err;
+    auto const at = std::find(errors.begin(), errors.end(), error) - errors.begin();
+    if (at == std::ssize(errors)) return;
+    std::string const message = nlohmann::json::parse(outcome.out)["errors"][static_cast<std::size_t>(at)]["message"];
+    for (std::string const& value : values) EXPECT_THAT(message, testing::HasSubstr(value)) << error;
   }
   /// Returns the errors in the output of a command with --json, each as "code at place".
   static std::vector<std::string> errors_in(std::string const& output) {
@@ -143,7 +140,8 @@ class ProgramFixture : public FolderFixture {
     auto const json = nlohmann::json::parse(output, nullptr, false);
     if (!json.is_object() || !json.contains("errors")) return found;
     for (nlohmann::json const& error : json["errors"]) {
-      std::string const place = error.value("place", "");
+      std::string place = error.value("place", "");
+      if (place.size() > 1 && place.ends_with('/')) place.pop_back();
       found.push_back(error.value("code", "") + " at " + std::filesystem::path(place).filename().string());
     }
     return found;
@@ -158,15 +156,22 @@ class ProgramFixture : public FolderFixture {
     EXPECT_EQ(found.size(), json.at("warnings").size());
     return found;
   }
-  /// Expects the rendering of this setup text to fail with an error of this code and place.
-  void expect_setup_error(std::string const& text, std::string const& error) const {
-    write("setup.toml", text);
-    expect_error({"render", "setup.toml", "-o", "case"}, 2, error);
+  /// Expects an object of --json or a summary.json to contain a warning of this code and place.
+  /// @param values  names and numbers that its text contains; its wording is free
+  static void expect_warning_in(nlohmann::json const& json, std::string const& warning,
+                                std::vector<std::string> const& values = {}) {
+    auto const warnings = warnings_in(json);
+    EXPECT_THAT(warnings, testing::Contains(warning));
+    auto const at = std::find(warnings.begin(), warnings.end(), warning) - warnings.begin();
+    if (at == std::ssize(warnings)) return;
+    std::string const text = json.at("warning_records")[static_cast<std::size_t>(at)].at("text");
+    for (std::string const& value : values) EXPECT_THAT(text, testing::HasSubstr(value)) << warning;
   }
-  /// Expects the rendering of this setup text to be rejected as invalid input.
-  void expect_setup_refused(std::string const& text, std::vector<std::string> const& pieces) const {
+  /// Expects the rendering of this setup text to fail with an error of this code and place.
+  void expect_setup_error(std::string const& text, std::string const& error,
+                          std::vector<std::string> const& values = {}) const {
     write("setup.toml", text);
-    expect_refused({"render", "setup.toml", "-o", "case"}, 2, pieces);
+    expect_error({"render", "setup.toml", "-o", "case"}, 2, error, values);
   }
 
   std::vector<std::string> names(std::string const& folder = ".") const {
