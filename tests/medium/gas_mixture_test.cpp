@@ -88,13 +88,13 @@ TEST(GasMixture, RefusesWhatIsNoMixture) {
   EXPECT_EQ(errors("[medium]\ngas = { helium = \"much\", air = 0.7 }\n"), "wrong_type at setup.toml:2:9");
   EXPECT_EQ(errors("[medium.gas]\nCO2 = 0.2\nair = 0.8\n"), "unknown_key at setup.toml:2:1");
   // A formula, in upper or lower case, is reported with the name of its gas.
-  auto const suggests = [](std::string const& gas) {
-    return testing::AllOf(testing::Throws<SetupError>(testing::Property("code", &Error::code, ErrorCode::unknown_key)),
+  auto const suggests = [](std::string const& written, std::string const& gas) {
+    return testing::AllOf(ThrowsSetupError(ErrorCode::unknown_key, "medium.gas." + written),
                           testing::ThrowsMessage<SetupError>(testing::HasSubstr('"' + gas + '"')));
   };
-  EXPECT_THAT([] { medium_of("[medium.gas]\nco2 = 0.2\nair = 0.8\n"); }, suggests("carbon_dioxide"));
-  EXPECT_THAT([] { medium_of("[medium.gas]\nHe = 1\n"); }, suggests("helium"));
-  EXPECT_THAT([] { medium_of("[medium]\ngas = { helum = 1 }\n"); }, suggests("helium"));
+  EXPECT_THAT([] { medium_of("[medium.gas]\nco2 = 0.2\nair = 0.8\n"); }, suggests("co2", "carbon_dioxide"));
+  EXPECT_THAT([] { medium_of("[medium.gas]\nHe = 1\n"); }, suggests("He", "helium"));
+  EXPECT_THAT([] { medium_of("[medium]\ngas = { helum = 1 }\n"); }, suggests("helum", "helium"));
 }
 
 // The resolved setup of a case reads back to the same constant.

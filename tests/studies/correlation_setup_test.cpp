@@ -77,7 +77,7 @@ TEST(CorrelationSettings, RefusesUnknownNamesAndWhatCannotBe) {
                                           Wrong{"max_displacement_px = 0", ErrorCode::out_of_range, "512"},
                                           Wrong{"max_displacement_px = -3", ErrorCode::out_of_range, "512"},
                                           Wrong{"max_displacement_px = 512.5", ErrorCode::out_of_range, "512"},
-                                          Wrong{"max_displacement_px = nan", ErrorCode::wrong_type, "nan"},
+                                          Wrong{"max_displacement_px = nan", ErrorCode::out_of_range, "nan"},
                                           Wrong{"max_displacement_px = inf", ErrorCode::out_of_range, "inf"},
                                           Wrong{"max_displacement_px = \"all\"", ErrorCode::unknown_choice, "\"none\""},
                                           Wrong{"max_displacement_px = true", ErrorCode::wrong_type, "\"none\""},

@@ -155,7 +155,7 @@ TEST(Tomography, ReferenceOutsideTheVectorsIsReportedInMillimetres) {
   far.low = {0.1, 0.1};
   far.high = {0.11, 0.11};
   options.reference = {far};
-  EXPECT_THAT(reconstruction(options), AllOf(ThrowsSetupError(ErrorCode::invalid_value, "--reference"),
+  EXPECT_THAT(reconstruction(options), AllOf(ThrowsSetupError(ErrorCode::invalid_value, "reference"),
                                              ThrowsMessage<SetupError>(HasSubstr("100 to 110 mm"))));
 }
 

@@ -33,7 +33,7 @@ TEST(UsualValues, NameTheUnitThatWasMistaken) {
               ElementsAre(Warns("implausible at setup.toml:2:1", AllOf(HasSubstr("1e-05 s"), HasSubstr("10 us"))),
                           Warns("implausible at setup.toml:3:1", HasSubstr("mm/s"))));
   EXPECT_THAT(unusual("[particles]\ndiameter_um = { kind = \"lognormal\", median_um = 1e-6, sigma = 0.2 }\n"),
-              ElementsAre(Warns("implausible at setup.toml:2:38", HasSubstr("particles.diameter_um.median_um"))));
+              ElementsAre(Warns("implausible at setup.toml:2:37", HasSubstr("particles.diameter_um.median_um"))));
   EXPECT_THAT(unusual("[[camera]]\npixel_pitch_um = 0.0045\n[camera.noise]\nfull_well_e = 3\n"),
               ElementsAre(Warns("implausible at setup.toml:2:1", AllOf(HasSubstr("0.0045 mm"), HasSubstr("4.5 um"))),
                           Warns("implausible at setup.toml:4:1")));
