@@ -117,7 +117,8 @@ std::vector<GaussianDot> add_at_residual(std::span<FitPixel const> pixels, DotFi
   return dots;
 }
 
-/// Returns whether all dots of a fit are significant, near the pixels and apart from each other.
+/// Returns whether the flux of every dot of a fit is significant, every centre lies within 1 px of a fitted pixel, and
+/// no two centres are closer than can be separated.
 bool plausible(std::span<FitPixel const> pixels, DotFit const& fit, DotModel const& model) {
   if (!std::isfinite(fit.cost)) return false;
   for (std::size_t k = 0; k < fit.dots.size(); ++k) {

@@ -49,4 +49,4 @@ for name in sys.argv[3:]:
     scale = np.sqrt(((A + B) ** 2).mean()) / 2
     o2, o3 = outliers(u, v)
     d = A - B
-    print("%-40s match rms %.4f  of rms %.2f = %.4f  median|d| %.3f  residual>2: %.2f %%, >3: %.2f %%, n=%d" % (name, np.sqrt((d ** 2).mean()), scale, np.sqrt((d ** 2).mean()) / scale, np.median(np.abs(d)), 100 * o2, 100 * o3, u.size))
+    print("%-40s rms difference of the matched frames %.4f grey levels, their rms %.2f, ratio %.4f; median difference %.3f; normalized residual above 2: %.2f %%, above 3: %.2f %% of %d vectors" % (name, np.sqrt((d ** 2).mean()), scale, np.sqrt((d ** 2).mean()) / scale, np.median(np.abs(d)), 100 * o2, 100 * o3, u.size))

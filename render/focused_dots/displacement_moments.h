@@ -40,8 +40,8 @@ struct PlaceRule {
   int count = 0;
   Vec2d places[max_positions];  ///< points in units of the half size, y downwards
   double weights[max_positions];
-  double fit[terms][max_positions];  ///< weights: the coefficient of a term is the sum over points of fit times the
-                                     ///< value at the point
+  double fit[terms][max_positions];  ///< weights of the least-squares fit: a term's coefficient is the sum of its
+                                     ///< weights times the values at the points
 
   GLADSTONE_HD static void basis(Vec2d place, double (&value)[terms]) {
     value[0] = 1;

@@ -74,8 +74,9 @@ struct PrescribedSurface {
   bool semi_diameter_vignettes = true;  ///< false: for drawings, from a design program; does not vignette
   bool has_aperture = false;  ///< true: the surface has an aperture of this semi-diameter, which also limits a stop
   double obscured = 0;        ///< radius of a central obscuration [m]
-  bool obscured_without_end = false;  ///< the obscuration has no outer radius: it is the inner radius of an aperture
-  SurfaceOutline<double> outline;     ///< aperture or obscuration that is not a circle about the axis
+  bool obscured_without_end =
+      false;  ///< true: `obscured` is the inner radius of an aperture, beyond which the surface is opaque
+  SurfaceOutline<double> outline;  ///< aperture or obscuration that is not a circle about the axis
   bool stop = false;
   std::vector<CoordinateBreak> before;  ///< coordinate breaks ahead of the surface
 };

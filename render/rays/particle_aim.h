@@ -26,7 +26,7 @@ struct PulseAim {
 struct ParticleStart {
   Vec2d origin{};       ///< whole-pixel position to which sums are relative, from the first pulse with an aim [px]
   int step = 0;         ///< first step in the sequence of ray numbers (RaysLadder)
-  bool placed = false;  ///< whether a pulse has an aim
+  bool placed = false;  ///< true: rays are sent to the lens at one of the pulses, or at both
 
   GLADSTONE_HD void add_pulse(Vec2d position, int first_step) {
     if (!placed) origin = position;

@@ -17,8 +17,9 @@ double smaller_semi_axis(WorldApparentPupil const& disc) {
   return std::sqrt(0.5 * (squares - std::sqrt(std::max(0.0, squares * squares - 4 * area * area))));
 }
 
-/// Returns the shift of the entrance pupil from its differences between the corners of a hexagon of circumradius
-/// `radius` around the source's middle; nullopt if no chief ray passes from one of the corners.
+/// Returns how far the entrance pupil, as seen from a point, moves when the point moves away from the source's middle.
+/// The derivatives are finite differences between the corners of a hexagon of circumradius `radius` around the middle;
+/// nullopt if no chief ray passes from one of the corners.
 std::optional<AimShift> difference_shift(Camera const& camera, WorldApparentPupil const& disc, Vec3d middle,
                                          double reach, double radius) {
   constexpr int corners = 6;

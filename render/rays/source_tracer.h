@@ -169,7 +169,8 @@ class SourceTracer {
     return std::sqrt(largest_shift2_);
   }
 
-  /// Number of rays traced together: two through a medium, which needs the registers of both.
+  /// Number of rays traced together: through a medium only two, since the state of more would not fit into the
+  /// registers.
   static constexpr int rays_traced_together = std::is_same_v<Medium, NoMedium<double>> ? 4 : 2;
 
   template <int N>

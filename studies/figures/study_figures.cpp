@@ -45,7 +45,7 @@ bool dense(FigureAxis const& axis, double width_px) {
   return axis.binned;
 }
 
-/// Returns true if the texts of the ticks are slanted; numbers without names rather have automatic ticks.
+/// Returns true if the texts of the ticks are slanted; numbers without names have automatic ticks instead.
 bool slanted(FigureAxis const& axis, double width_px) {
   return axis.numeric ? axis.labelled && dense(axis, width_px) : crowded(axis, width_px);
 }

@@ -21,7 +21,7 @@ struct GlassPlate {
   double index = 1;       ///< index of the glass at the setup's wavelength, relative to its surroundings [1]
   double absorption = 0;  ///< absorption coefficient of the glass; 0 unless lens.transmittance includes it [1/m]
   double thickness = 0;   ///< thickness at the centre [m]
-  Vec3d position{};       ///< position of the centre, in the frame of its side [m]
+  Vec3d position{};       ///< position of the plate's centre in the frame of target or camera, see `side` [m]
   Vec2d tilt{};           ///< right-handed rotations about x, then about the rotated y [rad]
 
   /// Pose of the mid-plane in the frame of its side; light propagates along its z axis.

@@ -95,7 +95,7 @@ std::vector<char> decode_hex(NrrdHeader const& header, std::string const& text) 
   return decoded;
 }
 
-/// Decompresses a bzip2 stream, whose first byte_skip bytes are dropped.
+/// Decompresses a bzip2 stream and drops the first byte_skip bytes of the result.
 std::vector<char> decode_bzip2(NrrdHeader const& header, std::string const& packed) {
   std::vector<char> decoded(nrrd_decoded_bytes(header));
   bz_stream stream{};

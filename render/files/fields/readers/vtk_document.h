@@ -53,7 +53,7 @@ class VtkDocument {
   VtkPayload::Format appended_format_ = VtkPayload::Format::base64;
 };
 
-/// Reports an attribute that is not the expected number of numbers. @throws DataError
+/// Reports an attribute that does not contain as many numbers as expected. @throws DataError
 [[noreturn]] void refuse_vtk_numbers(std::string const& path, std::string const& attribute, std::string_view text,
                                      std::size_t count);
 

@@ -39,7 +39,7 @@ class VtkPieceNumbers {
  public:
   /// @param name   of the array, for errors
   /// @param count  number of numbers that the grid requires
-  /// @throws DataError if they are damaged or of another number
+  /// @throws DataError if the array is damaged or contains another number of values
   VtkPieceNumbers(VtkPiece const& piece, VtkEncoding const& encoding, InputFile const& file, std::string const& name,
                   std::uint64_t count);
 
