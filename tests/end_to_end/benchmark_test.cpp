@@ -6,6 +6,7 @@
 #include <random>
 
 #include "analysis/vectors/convention_detection.h"
+#include "analysis/vectors/convention_report.h"
 #include "studies/benchmark/benchmark_cases.h"
 #include "tests/end_to_end/support/program_fixture.h"
 

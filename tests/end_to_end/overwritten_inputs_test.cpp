@@ -15,7 +15,9 @@ class OverwrittenInputs : public ProgramFixture {
     arguments.insert(arguments.end(), {"--quiet", "--json"});
     Outcome const outcome = gladstone(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err;
-    expect_error_in(outcome, "output at " + fs::path(file).filename().string());
+    auto const error = nlohmann::json::parse(outcome.out)["errors"][0];
+    EXPECT_EQ(error["code"], "output") << outcome.err;
+    EXPECT_THAT(error["place"].get<std::string>(), testing::HasSubstr(file)) << "the file, or a figure inside it";
     EXPECT_TRUE(read(file) == before) << file << " is destroyed by " << testing::PrintToString(arguments);
   }
   /// Expects the command to be rejected because `output` is its input `file`, which is unchanged.

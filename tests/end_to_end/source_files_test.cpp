@@ -59,7 +59,7 @@ TEST_F(Sources, FramesThatAreReplacedWhileTheyAreCorrelatedGiveNoVectors) {
   render("case");
   Outcome const outcome = rendered_under({"correlate", "case", "--json"}, "correlating");
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
-  expect_error_in(outcome, "changed at reference.tif", {"gladstone correlate case"});
+  expect_error_in(outcome, "changed at setup.toml", {"gladstone correlate case"});
   EXPECT_FALSE(std::filesystem::exists(in("case/vectors.h5")));
   succeed({"correlate", "case"});
   succeed({"compare", "case", "--no-figures"});
