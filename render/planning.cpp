@@ -22,6 +22,16 @@ IntegrationStep choose_step(Scene const& scene) {
   return finer;
 }
 
+/// Returns true if "auto" traces a given number of rays because this is estimated to take far less time than the
+/// deflection table alone, whose cost does not depend on the number of dots.
+bool rays_take_far_less_time(Scene const& scene, RenderPlan const& plan) {
+  constexpr double long_s = 5, far_less = 60;
+  auto const rays = scene.setup.render.rays_per_dot;
+  if (scene.setup.render.method != RenderMethod::automatic || !rays) return false;
+  double const by_table = table_seconds(require_focused_dots(scene, plan));
+  return by_table >= long_s && far_less * static_cast<double>(*rays) * rays_seconds(scene, plan) < by_table;
+}
+
 /// Completes a plan that has a step with the method and the number of rays.
 RenderPlan plan_rays(Scene const& scene, RenderPlan const& stepped) {
   if (scene.second_medium) {  // use the larger number of rays of both media
@@ -31,6 +41,9 @@ RenderPlan plan_rays(Scene const& scene, RenderPlan const& stepped) {
   }
   RenderPlan plan = stepped;
   plan.method = resolve_render_method(scene);
+  if (plan.method == RenderMethod::focused_dots && rays_take_far_less_time(scene, plan)) {
+    plan.method = RenderMethod::rays;
+  }
   if (plan.method == RenderMethod::formula) return plan;  // no rays are traced; the recorded number is one
   if (plan.method == RenderMethod::rays) return plan_rays_by_tracing(scene, plan);
   plan = plan_rays_by_table(require_focused_dots(scene, plan));

@@ -171,6 +171,17 @@ TableError measure_table_error(FocusedDots const& dots) {
   return error;
 }
 
+double table_seconds(FocusedDots const& dots) {
+  Scene const& scene = dots.scene();
+  DeflectionTableLayout const layout(dots, scene.dots,
+                                     DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
+  if (!layout.wanted()) return 0;
+  double const of_table = 4.0 * static_cast<double>(layout.table.fours());
+  double const measured = static_cast<double>(place_count) * LoneDot::sample_count * LoneDot::largest_sample /
+                          LoneDot::predicted_per_traced;
+  return (of_table + measured) * ray_seconds(scene, dots.plan());
+}
+
 double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
   constexpr double a_node = 0.1e-6;  // time of the table look-ups at one node of a light cone [s]
   Scene const& scene = dots.scene();
@@ -182,11 +193,7 @@ double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
   double const of_node =
       (layout.wanted() ? a_node : 0) + (theory == RenderTheory::yes ? theory_ray_seconds(scene, dots.plan()) : 0);
   double const of_dot = static_cast<double>(dots.plan().rays) * ray_seconds(scene, dots.plan()) + nodes * of_node;
-  double const of_table = 4.0 * static_cast<double>(layout.table.fours());
-  double const measured = static_cast<double>(place_count) * LoneDot::sample_count * LoneDot::largest_sample /
-                          LoneDot::predicted_per_traced;
-  double const once = layout.wanted() ? (of_table + measured) * ray_seconds(scene, dots.plan()) : 0;
-  return once + static_cast<double>(scene.source_count()) * of_dot;
+  return table_seconds(dots) + static_cast<double>(scene.source_count()) * of_dot;
 }
 
 RenderPlan plan_rays_by_table(FocusedDots const& dots) {

@@ -26,10 +26,14 @@ inline constexpr std::uint64_t initial_table_rays = 32, refined_table_rays = 512
 /// scatter use up to 256 rays (DotModel). The plan contains the remaining error of the table.
 RenderPlan plan_rays_by_table(FocusedDots const& dots);
 
-/// Estimates the processor time for rendering a scene's dots [s]: the deflection table and the measurement of its
-/// error, the rays of every dot, and for every node of its light cone the look-ups in the table and, if requested, the
-/// samples of small-angle theory (Eq. 9). No clock is read: nodes and samples are counted and multiplied by times
-/// measured on the processor of docs/benchmarks.md.
+/// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].
+/// The table has the same number of rays for a hundred dots as for thousands.
+double table_seconds(FocusedDots const& dots);
+
+/// Estimates the processor time for rendering a scene's dots [s]: table_seconds(), the rays of every dot, and for every
+/// node of its light cone the look-ups in the table and, if requested, the samples of small-angle theory (Eq. 9). No
+/// clock is read: nodes and samples are counted and multiplied by times measured on the processor of
+/// docs/benchmarks.md.
 double dots_seconds(FocusedDots const& dots, RenderTheory theory);
 
 }  // namespace gladstone::inline focused_dots

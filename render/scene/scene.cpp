@@ -13,7 +13,6 @@
 #include "render/files/fields/field_file.h"
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
-#include "render/sensor/sensor.h"
 
 namespace gladstone::inline scene {
 namespace {

@@ -7,6 +7,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/subpixel_fit.h"
+#include "analysis/uncertainty/uncertainty.h"
 
 namespace gladstone::inline cases {
 namespace {
@@ -57,9 +58,9 @@ CorrelationSettings read_correlation_settings(SetupTable table, PreparedSet set)
                                     .number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}},
                                                     {"none", "off"}, Range::at_least(1.0))
                                     .number;
-  settings.uncertainty = table.word("uncertainty", "auto",
-                                    {"auto", "none", "correlation_statistics", "image_matching", "peak_ratio",
-                                     "moment_of_correlation", "combination"});
+  std::vector<std::string> estimators = uncertainty_methods();
+  estimators.insert(estimators.begin(), {"auto", "none"});
+  settings.uncertainty = table.word("uncertainty", "auto", estimators);
   settings.least_peak_ratio =
       table.number_or_word("least_peak_ratio", {{}, "off"}, {"off"}, Range::at_least(1.0)).number;
   settings.least_correlation =

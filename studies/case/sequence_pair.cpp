@@ -26,7 +26,7 @@ std::optional<std::size_t> selected_pair(SetupNode const& sequence) {
   return static_cast<std::size_t>(pair->integer);
 }
 
-/// Returns true if the medium is the field of a file. The other cases are reported by check_sequence().
+/// Returns true if the medium is the field of a file. The other cases are reported by the check of the setup.
 bool has_field_of_file(SetupDocument const& setup) {
   SetupNode const* const kind = setup.find({"medium", "field", "kind"});
   return kind && kind->kind == SetupNode::Kind::text && kind->text == "file";

@@ -117,7 +117,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
   }
   // comparison renders further points of this case by the same method
-  if (accuracy.table) {
+  if (accuracy.table || prepared.plan.method != resolve_render_method(prepared.scene)) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.plan.method)));
   }
   outcome.levels = {grey_levels(frames.levels->reference()), grey_levels(frames.levels->flow())};

@@ -32,7 +32,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("input", arguments->inputs,
-                 "A case folder, two images (reference and flow), or one image file with both as pages; with "
+                 "A case folder, two images (frame A: the reference of BOS or the first pulse of PIV; frame B), or one "
+                 "image file with both as pages; with "
                  "--ensemble any number of pairs; for a sequence two patterns ('A_*.tif' 'B_*.tif'), one pattern, a "
                  "folder, or an image file of many pages")
       ->required()
@@ -65,12 +66,11 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     }
     std::size_t const given = arguments->inputs.size();
     if (arguments->ensemble && given % 2 != 0)
-      throw DataError(
-          ErrorCode::arguments, "--ensemble",
-          fmt::format("got {} images (pairs of reference and flow require an even number); give pairs", given));
+      throw DataError(ErrorCode::arguments, "--ensemble",
+                      fmt::format("got {} images (pairs of frames A and B require an even number); give pairs", given));
     if (!arguments->ensemble && given > 2)
       throw DataError(ErrorCode::arguments, "images",
-                      fmt::format("got {} images (a measurement requires a reference and a flow frame); "
+                      fmt::format("got {} images (a measurement requires frame A and frame B); "
                                   "give two, or --ensemble for pairs of one displacement",
                                   given));
     Backend const device = options.open_device();

@@ -26,8 +26,8 @@ void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sourc
   }
   if (!exchanged) return;
   field.warnings.push_back({WarningCode::inconsistent, "",
-                            fmt::format("the frames are exchanged: {} is the flow frame and {} the reference, so that "
-                                        "every displacement has the opposite sign; give the reference first",
+                            fmt::format("the frames are exchanged: {} is the second frame (B) and {} the first (A), so "
+                                        "that every displacement has the opposite sign; give frame A first",
                                         reference.string(), flow.string())});
 }
 

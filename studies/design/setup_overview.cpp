@@ -80,7 +80,8 @@ void add_lenslets(std::vector<ResultRow>& rows, Setup const& setup) {
   rows.push_back(plain_row("lenslets_across", "lenslets across the sensor", setup.camera.columns / pixels, ""));
 }
 
-/// Returns the number of dots that the sensor sees; NaN if tracing a chief ray of each would take more than a second.
+/// Returns the number of dots that the sensor sees; NaN if their chief rays would meet more than two million
+/// surfaces (about a second).
 double count_dots_in_view(Setup const& setup, DotPattern const& dots) {
   constexpr std::size_t max_intersections = 2'000'000;
   Scene scene;

@@ -99,9 +99,7 @@ std::vector<Row> const& rows() {
       {"uncertainty method",
        "analysis/uncertainty",
        std::regex("\\bstd::vector<Vec2d> (\\w+)\\(UncertaintyInput const& \\w+\\) \\{"),
-       // the choices of a setup are read below the room of the methods
-       {"analysis/uncertainty/uncertainty.h", "analysis/uncertainty/uncertainty.cpp",
-        "studies/case/correlation_setup.cpp"},
+       {"analysis/uncertainty/uncertainty.h", "analysis/uncertainty/uncertainty.cpp"},
        // computed on a GPU, and recommended by messages
        {{"correlation_statistics",
          {"cuda/correlation/correlation_statistics.cu", "cuda/correlation/cuda_correlator.cpp",
@@ -136,7 +134,7 @@ std::vector<Row> const& rows() {
       {"name of an uncertainty method",
        "analysis/uncertainty",
        std::regex("NamedUncertainty\\{\"(\\w+)\""),
-       {"analysis/uncertainty/uncertainty.cpp", "studies/case/correlation_setup.cpp"},
+       {"analysis/uncertainty/uncertainty.cpp"},
        // recommended by a message; also a column of vector files; learnt from the others
        {{"correlation_statistics", {"studies/compare/stereo_input.cpp"}},
         {"peak_ratio",
