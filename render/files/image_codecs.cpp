@@ -71,7 +71,7 @@ ImageCodecs const& load_image_codecs() {
 
 }  // namespace
 
-ImageCodecs const& image_codecs() {
+ImageCodecs const& loaded_image_codecs() {
   static ImageCodecs const& codecs = load_image_codecs();
   return codecs;
 }

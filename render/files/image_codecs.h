@@ -72,7 +72,7 @@ class ImageCodecs {
 /// Returns the image codecs; the first call loads libgladstone_image_codecs.so from the directory in the environment
 /// variable GLADSTONE_IMAGE_CODECS, or else along the program's run path.
 /// @throws DataError if the library cannot be loaded, or (code `memory`) if too little address space is available
-ImageCodecs const& image_codecs();
+ImageCodecs const& loaded_image_codecs();
 
 /// Name of the function that the library exports. Its number changes with this interface, so that a library of another
 /// version is refused.

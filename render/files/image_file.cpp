@@ -31,7 +31,7 @@ namespace {
 /// Opens an image by the image codecs. An error in loading them names the image that requires them.
 std::unique_ptr<PageReader> open_by_codecs(std::string const& path) {
   try {
-    return image_codecs().open(path);
+    return loaded_image_codecs().open(path);
   } catch (DataError const& error) {
     throw DataError(error.code(), path,
                     std::string("requires the image codecs, since it is not an intact TIFF: ") + error.what());

@@ -20,7 +20,7 @@ TEST(ImageCodecs, AreNamedWithTheCureWhereTheyAreMissing) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   auto const read_without = [] {
     setenv("GLADSTONE_IMAGE_CODECS", "/nowhere", 1);
-    std::string const error = error_of([] { image_codecs(); });
+    std::string const error = error_of([] { loaded_image_codecs(); });
     std::fputs(error.c_str(), stderr);
     std::exit(3);
   };

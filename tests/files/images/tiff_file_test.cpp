@@ -200,7 +200,7 @@ class TiffFile : public Output {
     if ((page.separate && page.bits % 8 != 0) || (page.tiled && page.bits == 64)) return;
     std::string const path = in_folder("page.tif");
     InputFile const file(path);
-    std::unique_ptr<PageReader> const ours = open_tiff(file), theirs = image_codecs().open(path);
+    std::unique_ptr<PageReader> const ours = open_tiff(file), theirs = loaded_image_codecs().open(path);
     ASSERT_TRUE(ours && theirs) << page;
     EXPECT_EQ(read_bits(*theirs, page), written_bits(page)) << page;
     expect_equal_headers(ours->header(), theirs->header(), page);
@@ -336,7 +336,7 @@ TEST_F(TiffFile, JpegIsReadAsByOpenImageIo) {
     std::string const path = in_folder("jpeg.tif");
     write_layout(path, page);
     InputFile const file(path);
-    std::unique_ptr<PageReader> const ours = open_tiff(file), theirs = image_codecs().open(path);
+    std::unique_ptr<PageReader> const ours = open_tiff(file), theirs = loaded_image_codecs().open(path);
     ASSERT_TRUE(ours && theirs);
     std::vector<std::uint64_t> expected = read_bits(*theirs, page);
     if (channels == 1) {
@@ -385,7 +385,7 @@ TEST_F(TiffFile, FilesOfOpenImageIoAreReadAsByOpenImageIo) {
         ASSERT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeDesc::FLOAT, samples.data()));
         ASSERT_TRUE(output->close());
         InputFile const file(path);
-        std::unique_ptr<PageReader> const ours = open_tiff(file), theirs = image_codecs().open(path);
+        std::unique_ptr<PageReader> const ours = open_tiff(file), theirs = loaded_image_codecs().open(path);
         ASSERT_TRUE(ours && theirs) << compression;
         std::vector<unsigned char> one(spec.image_bytes()), other(spec.image_bytes());
         EXPECT_EQ(ours->read(one.data()), "") << compression;
