@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <optional>
 #include <set>
@@ -75,13 +76,13 @@ SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs) {
       throw_if_interrupted();
       if (!counted.insert(frame->name()).second) continue;
       try {
-        auto const [columns, rows] =
+        std::array<int, 2> const size =
             frame->located ? frame->located->size(frame->page) : ImagePages(frame->path).size(frame->page);
         auto const known = std::find_if(candidates.begin(), candidates.end(), [&](Candidate const& candidate) {
-          return candidate.size.columns == columns && candidate.size.rows == rows;
+          return candidate.size.columns == size[0] && candidate.size.rows == size[1];
         });
         if (known == candidates.end())
-          candidates.push_back({{columns, rows, frame->name()}, 1});
+          candidates.push_back({{size[0], size[1], frame->name()}, 1});
         else
           ++known->frames;
       } catch (DataError const&) {  // the problem is reported when the pair is correlated

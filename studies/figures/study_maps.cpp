@@ -36,7 +36,8 @@ class ErrorMapFigure {
       : cells_(cells), x_axis_(x_axis), y_axis_(y_axis), x_(cells.axis(x_axis)), y_(cells.axis(y_axis)) {
     for (ErrorMeasure& error : known_errors(cells)) {
       if (maps_.size() == 2) break;
-      most_filled_ = std::max(most_filled_, fill(maps_.emplace_back(std::move(error))));
+      maps_.push_back({std::move(error)});
+      most_filled_ = std::max(most_filled_, fill(maps_.back()));
     }
     logarithmic_ = high_ > 10 * low_;
   }

@@ -69,7 +69,7 @@ ParticlePair two_scenes(ParticleSettings settings) {
 }
 
 ParticlePair noise_alone(int pixels) {
-  ParticlePair pair{Image<double>(pixels, pixels, 0.0), Image<double>(pixels, pixels, 0.0)};
+  ParticlePair pair{{Image<double>(pixels, pixels, 0.0), Image<double>(pixels, pixels, 0.0)}};
   std::mt19937 bits(5);
   for (Image<double>* image : {&pair.reference, &pair.flow})
     for (double& value : *image) value = static_cast<double>(bits() % 256);
@@ -272,7 +272,7 @@ TEST(PairVerdict, WarnsOfOnePictureGivenTwice) {
 }
 
 TEST(PairVerdict, ReportsNoDisplacementWithoutSignal) {
-  ParticlePair const flat{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)};
+  ParticlePair const flat{{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)}};
   EXPECT_THAT(judged(flat).warnings, IsEmpty());
 }
 
@@ -290,10 +290,10 @@ TEST(PairVerdict, EveryPairHasAResult) {
             "correlates");
   EXPECT_THAT(judged(render_particle_pair({.noise = 0.05, .pitch_px = 8.3}, everywhere(2.5, 0.0))).verdict,
               AllOf(StartsWith(not_judged), HasSubstr("8.3")));
-  ParticlePair const flat{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)};
+  ParticlePair const flat{{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)}};
   EXPECT_THAT(judged(flat).verdict, StartsWith(not_judged));
   double const nan = std::numeric_limits<double>::quiet_NaN();
-  ParticlePair const masked{Image<double>(128, 128, nan), Image<double>(128, 128, nan)};
+  ParticlePair const masked{{Image<double>(128, 128, nan), Image<double>(128, 128, nan)}};
   EXPECT_THAT(judged(masked).verdict, StartsWith(not_judged));
   CorrelationSettings settings;
   settings.median_threshold.reset();
