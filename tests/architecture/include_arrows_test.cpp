@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -207,6 +208,39 @@ TEST(Tree, LinksTheRoomsOfTheTable) {
     linked.erase(room);
   }
   for (auto const& [folder, targets] : linked) ADD_FAILURE() << folder << " is not a room of the table";
+}
+
+// The page for developers lists the same rooms as the table of includes, and the same permitted rooms wherever its row
+// consists of names ("`render/files`, `analysis/vectors`; OpenCV in `.cpp` only") rather than of a rule ("all of
+// `studies`").
+TEST(Tree, DocumentsRoomsAndArrows) {
+  std::ifstream in(std::filesystem::path(GLADSTONE_SOURCE_DIR) / "docs/architecture.md");
+  std::map<std::string, std::string> documented;  // third cell of each row, by room
+  for (std::string line; std::getline(in, line);) {
+    std::smatch cells;
+    if (!std::regex_match(line, cells, std::regex(R"(\| (`[a-z_/`, ]+) \| [^|]+ \| ([^|]+) \|)"))) continue;
+    std::string const names = cells[1];
+    std::regex const name("`([a-z_/]+)`");
+    for (std::sregex_iterator room(names.begin(), names.end(), name), end; room != end; ++room)
+      documented[(*room)[1]] = cells[2];
+  }
+  int compared = 0;
+  for (auto const& [room, permitted] : permitted_rooms()) {
+    if (room == "studies") continue;  // main.cpp
+    ASSERT_TRUE(documented.contains(room)) << room << " has no row in docs/architecture.md";
+    std::string const& cell = documented[room];
+    if (std::regex_search(cell, std::regex("nothing|\\ball\\b|\\bas\\b|only `|\\*|same name|^`drawing`|^`case`")))
+      continue;
+    std::set<std::string> named{"render/base"};
+    std::regex const name("`([a-z]+/[a-z_]+)`");
+    for (std::sregex_iterator found(cell.begin(), cell.end(), name), end; found != end; ++found)
+      named.insert((*found)[1]);
+    std::set<std::string> expected = permitted;
+    expected.insert("render/base");
+    EXPECT_EQ(named, expected) << "row " << room << " of docs/architecture.md";
+    ++compared;
+  }
+  EXPECT_GE(compared, 16);
 }
 
 // <nlohmann/json.hpp> takes a second to compile: a header includes json_fwd.hpp. These hold JSON values, for the

@@ -27,8 +27,11 @@ foreach(file IN LISTS package)
   endforeach()
 endforeach()
 
+# the consumer has no command line and reads no case: libraries that only studies use are not required
 run("configuring the consumer" ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK}/build
-    -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/moved -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS})
+    -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/moved -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS}
+    -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON -DCMAKE_DISABLE_FIND_PACKAGE_spdlog=ON
+    -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON)
 run("building the consumer" ${CMAKE_COMMAND} --build ${WORK}/build)
 run("running the consumer" ${WORK}/build/consumer)
 set(expected "gladstone ${VERSION}: 64 x 64 px; theory follows the rays, correlation follows them\n")
