@@ -36,7 +36,7 @@ TEST_F(Convert, VectorsOfACaseAreWrittenInEveryFormat) {
     EXPECT_EQ(again["ray_truth"], scores["ray_truth"]) << name;
   }
   Hdf5Reader const original(path("case/vectors.h5")), copy(path("v.h5"));
-  for (char const* const attribute : {"setup", "reference_sha256", "flow_sha256", "verdict", "device"})
+  for (char const* const attribute : {"setup", "reference_sha256", "flow_sha256", "verdict_code", "device"})
     EXPECT_EQ(copy.attribute(attribute), original.attribute(attribute)) << attribute;
 }
 
