@@ -133,8 +133,7 @@ class Interrupted : public Error {
 };
 
 /// Returns true if an error means that memory is exhausted: std::bad_alloc, std::length_error (a size refused before
-/// its allocation), an Error of code `memory`, DeviceMemoryError, a SetupError with a problem of code `memory`, or an
-/// OpenCV error of code -4.
+/// its allocation), an Error of code `memory`, DeviceMemoryError, or a SetupError with a problem of code `memory`.
 bool is_out_of_memory(std::exception const& error);
 
 /// Returns the text that is shown to the user for an error. The text of an Error is returned as it is; errors of
