@@ -62,6 +62,8 @@ std::string error_code_name(ErrorCode code) {
       return "memory";
     case ErrorCode::output:
       return "output";
+    case ErrorCode::overwrites_input:
+      return "overwrites_input";
     case ErrorCode::device:
       return "device";
     case ErrorCode::arguments:
