@@ -69,7 +69,7 @@ TEST_F(Preview, ShowsEveryKindOfExperiment) {
 
 TEST_F(Preview, SaysWhatItLeavesOut) {
   EXPECT_THAT(succeed({"render", "setup.toml", "--preview"}),
-              testing::AllOf(HasSubstr("left out: the rest of the image"), HasSubstr("32 rays per source")));
+              testing::AllOf(HasSubstr("left out: the rest of the image"), ContainsWhole("32 rays per source")));
 }
 
 TEST_F(Preview, RefusesBadOutputs) {

@@ -229,9 +229,9 @@ TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
     return found;
   };
   auto const summary = rendered({});
-  EXPECT_THAT(of_faces(summary), testing::AllOf(testing::HasSubstr("32 rays"), testing::HasSubstr("0.001"),
-                                                testing::HasSubstr("camera.exposure"),
-                                                testing::HasSubstr("render.rays_per_dot = \"auto\"")));
+  EXPECT_THAT(of_faces(summary),
+              testing::AllOf(ContainsWhole("32 rays"), ContainsWhole("0.001"), testing::HasSubstr("camera.exposure"),
+                             testing::HasSubstr("render.rays_per_dot = \"auto\"")));
   auto const& faces = summary["estimator"]["side_faces"];
   EXPECT_GT(faces["dots"], 4);
   EXPECT_EQ(faces["rays"], 32);
@@ -241,7 +241,7 @@ TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
   EXPECT_GT(summary["image_error"]["levels"], 0.5);
   EXPECT_THAT(warnings_in(summary), testing::Not(testing::Contains("low_accuracy at images")));
   EXPECT_THAT(of_faces(rendered({"--set", "camera.exposure=20000"})),
-              testing::AllOf(testing::HasSubstr("32 rays"), testing::Not(testing::HasSubstr("camera.exposure"))));
+              testing::AllOf(ContainsWhole("32 rays"), testing::Not(testing::HasSubstr("camera.exposure"))));
 }
 
 TEST_F(FieldFiles, AnIndexInSinglePrecisionIsWarnedOfInTheSummary) {
@@ -298,7 +298,7 @@ TEST_F(Variants, WarnsOfInaccurateTruth) {
   auto const json = json_of(
       {"render", "setup.toml", "-o", "case", "--set", "lens.focus=medium", "--set", "camera.noise.read_noise_e=3"});
   EXPECT_THAT(warnings_in(json), testing::IsSupersetOf({"low_accuracy at truth", "unsuitable at camera.offset_dn"}));
-  EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("6.55 grey levels"));
+  EXPECT_THAT(json["warnings"].dump(), ContainsWhole("6.55 grey levels"));
   EXPECT_THAT(json["warnings"].dump(), testing::Not(testing::HasSubstr("truth is computed from rays only")))
       << "the remark is omitted if it applies to all dots";
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
@@ -370,7 +370,7 @@ TEST_F(Variants, ReportsDotsHiddenByExcessiveGradients) {
                              "--set", "render.method=rays"});
   EXPECT_THAT(warnings_in(json),
               testing::IsSupersetOf({"out_of_view at target", "implausible at medium.field.gradient_kg_m4"}));
-  EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("32 rays"));
+  EXPECT_THAT(json["warnings"].dump(), ContainsWhole("32 rays"));
 }
 
 }  // namespace
