@@ -9,6 +9,7 @@
 
 #include "analysis/calibration/dot_regions.h"
 #include "analysis/preparation/illumination.h"
+#include "analysis/preparation/opencv_call.h"
 
 namespace gladstone::inline calibration {
 namespace {
@@ -211,9 +212,7 @@ bool measure(LitPicture const& lit, LevelSurface const& background, DotRegion co
   return true;
 }
 
-}  // namespace
-
-DetectedDots detect_dots(Image<double> const& picture) {
+DetectedDots find_dots(Image<double> const& picture) {
   DetectedDots found;
   if (picture.columns() < 3 || picture.rows() < 3) return found;
   LitPicture const lit = lit_picture(picture);
@@ -227,6 +226,12 @@ DetectedDots detect_dots(Image<double> const& picture) {
     if (measure(lit, background_surface(lit, free, mean_error, region), region, dot)) found.dots.push_back(dot);
   }
   return found;
+}
+
+}  // namespace
+
+DetectedDots detect_dots(Image<double> const& picture) {
+  return call_opencv(ErrorCode::internal, "detect dots", [&] { return find_dots(picture); });
 }
 
 }  // namespace gladstone::inline calibration

@@ -34,8 +34,7 @@ constexpr double too_many_failed = 0.2;
 /// Smallest number of windows for a median test: one and the neighbours by which it is tested.
 constexpr std::size_t fewest_windows = fewest_neighbours + 1;
 
-char const* const correlates = "correlates";
-char const* const uncorrelated_verdict = "does not correlate";
+using Kind = PairVerdict::Kind;
 
 bool has_signal(VectorReason reason) {
   return reason != VectorReason::masked && reason != VectorReason::outside && reason != VectorReason::no_signal;
@@ -210,13 +209,14 @@ void reject_uncorrelated_vectors(DisplacementField& field, DisplacementField con
 
 namespace {
 
-/// Returns the reason why a pair cannot be assessed by its vectors; empty if it can be assessed.
-std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& settings) {
-  if (found.signal == 0) return found.known == 0 ? "all windows are masked" : "no window has a signal";
-  if (correlation_method(settings.method).optical_flow) return "optical flow has no correlation";
-  if (found.part(found.doubtful) >= suspicious) return "";
-  if (found.signal < fewest_windows) return fmt::format("there are fewer than {} windows", fewest_windows);
-  return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" does not reject spurious vectors";
+/// Returns the verdict on a pair that cannot be assessed by its vectors; nullopt if it can be assessed.
+std::optional<PairVerdict> find_reason_not_to_judge(Tally const& found, CorrelationSettings const& settings) {
+  if (found.signal == 0) return PairVerdict{found.known == 0 ? Kind::masked : Kind::no_signal};
+  if (correlation_method(settings.method).optical_flow) return PairVerdict{Kind::optical_flow};
+  if (found.part(found.doubtful) >= suspicious) return std::nullopt;
+  if (found.signal < fewest_windows) return PairVerdict{Kind::few_windows, static_cast<double>(fewest_windows)};
+  if (!settings.median_threshold) return PairVerdict{Kind::no_median_test};
+  return std::nullopt;
 }
 
 /// Results of the costly tests, which are run only if the vectors alone are not conclusive.
@@ -228,9 +228,9 @@ struct Evidence {
 
 /// Returns the verdict on the pair from the vectors that passed the decorrelation test. @pre the pair can be assessed
 /// by its vectors
-std::string verdict_of(DisplacementField const& field, Tally const& left) {
-  if (std::any_of(field.status.begin(), field.status.end(), is_valid_or_replaced)) return correlates;
-  return left.nothing_left() ? uncorrelated_verdict : "not judged: no vector passed its tests";
+PairVerdict judge_vectors(DisplacementField const& field, Tally const& left) {
+  if (std::any_of(field.status.begin(), field.status.end(), is_valid_or_replaced)) return {Kind::correlates};
+  return {left.nothing_left() ? Kind::uncorrelated : Kind::no_valid_vector};
 }
 
 void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettings const& settings) {
@@ -238,12 +238,12 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
     field.warnings.push_back(
         {WarningCode::unreliable, "",
          "both frames are the same image, bit for bit (so that every displacement is 0); use two different frames"});
-    field.verdict = "not judged: both frames are the same image";
+    field.verdict = {Kind::identical_frames};
     return;
   }
   Tally const found(field);
-  std::string const why_not = reason_not_to_judge(found, settings);
-  field.verdict = why_not.empty() ? verdict_of(field, found) : "not judged: " + why_not;
+  std::optional<PairVerdict> const not_judged = find_reason_not_to_judge(found, settings);
+  field.verdict = not_judged ? *not_judged : judge_vectors(field, found);
   if (found.part(found.doubtful) < suspicious) return;
   Reach const reach(settings);
   std::optional<PatternPeriod> const period = evidence.period();
@@ -255,7 +255,7 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
                        "displacements below {:.2f} px are unambiguous, larger ones are reduced by whole periods; use "
                        "random dots, or set correlate.max_displacement_px below {:.2f} if no displacement is larger",
                        period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px)});
-    field.verdict = fmt::format("not judged: the pattern repeats every {:.2f} px", period->pitch_px);
+    field.verdict = {Kind::periodic, period->pitch_px};
   } else if (found.compared > 0) {
     // Clear the ambiguities of earlier passes: a large window across a gradient has several peaks, but the smaller
     // windows of later passes have resolved this ambiguity.
@@ -263,7 +263,7 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
     reject_uncorrelated_vectors(field, evidence.chance(), settings);
   }
   Tally const left(field);
-  if (!period && why_not.empty()) field.verdict = verdict_of(field, left);
+  if (!period && !not_judged) field.verdict = judge_vectors(field, left);
   bool const differ = left.part(left.uncorrelated) >= worth_a_warning;
   if (differ) field.warnings.push_back({WarningCode::unreliable, "", uncorrelated_text(left, reach)});
   if (left.part(left.beyond) >= worth_a_warning && !(differ && left.nothing_left()))
@@ -290,7 +290,7 @@ HostFrames known_in_any(PairSequence const& pairs) {
 
 }  // namespace
 
-bool frames_correlate(DisplacementField const& field) { return field.verdict != uncorrelated_verdict; }
+bool frames_correlate(DisplacementField const& field) { return field.verdict.kind != Kind::uncorrelated; }
 
 bool are_identical_frames(Image<double> const& a, Image<double> const& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
@@ -300,7 +300,7 @@ bool are_identical_frames(Image<double> const& a, Image<double> const& b) {
 
 void assess_pair(DisplacementField& field, StoredFrames const& frames, Correlator const& correlator,
                  CorrelationSettings const& settings) {
-  if (!field.verdict.empty()) return;
+  if (field.verdict != PairVerdict{}) return;
   mark_windows_outside(field, frames, settings);
   judge(field,
         {[&] { return are_identical_frames(frames.reference(), frames.flow()); },

@@ -27,10 +27,8 @@ void reject_uncorrelated_vectors(DisplacementField& field, DisplacementField con
 /// - Warnings: identical frames, uncorrelated frames, displacements beyond the search range, a pattern whose period
 ///   makes displacements within the search range ambiguous, and at least a fifth of the vectors failing a test.
 /// - If fewer than one in twenty vectors are replaced, invalid or ambiguous, the costly tests are skipped.
-/// - Verdict: "correlates" if any vector is valid or replaced; "does not correlate" if every vector with a signal is
-///   uncorrelated or beyond the search range; or "not judged: " and the reason: identical frames, no signal, everything
-///   masked, a periodic pattern, optical flow, too few windows, a disabled median test, or no vector that passed its
-///   tests.
+/// - Verdict: `correlates` if any vector is valid or replaced; `uncorrelated` if every vector with a signal is
+///   uncorrelated or beyond the search range; otherwise the reason why the pair is not judged.
 /// - Masked windows outside the frames are first marked by mark_windows_outside().
 /// - Does nothing if the correlator has set a verdict itself.
 /// @param field  result of the correlator for these frames

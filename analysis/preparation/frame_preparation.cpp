@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/preparation/opencv_call.h"
 #include "render/base/contracts.h"
 
 namespace gladstone::inline preparation {
@@ -33,9 +34,11 @@ HostFrames prepare_frames(StoredFrames const& frames, FramePreparation const& pr
   for (std::size_t i = 0; i < reference.size(); ++i)
     if (!std::isfinite(reference.data()[i]) || !std::isfinite(flow.data()[i])) prepared.known.data()[i] = 0.0;
   fill_unknown(prepared);
-  for (FrameChange const& mask : preparation.masks) mask(prepared);
-  fill_unknown(prepared);
-  for (FrameChange const& step : preparation.steps) step(prepared);
+  call_opencv(ErrorCode::internal, "prepare the frames", [&] {
+    for (FrameChange const& mask : preparation.masks) mask(prepared);
+    fill_unknown(prepared);
+    for (FrameChange const& step : preparation.steps) step(prepared);
+  });
   for (std::size_t i = 0; i < reference.size(); ++i)
     if (prepared.known.data()[i] == 0.0)
       prepared.reference.data()[i] = prepared.flow.data()[i] = std::numeric_limits<double>::quiet_NaN();

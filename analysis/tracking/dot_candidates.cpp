@@ -7,6 +7,7 @@
 
 #include "analysis/preparation/grey_levels.h"
 #include "analysis/preparation/illumination.h"
+#include "analysis/preparation/opencv_call.h"
 #include "render/base/median.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
@@ -35,15 +36,19 @@ Image<double> filtered(Image<double> const& levels, double sigma) {
     if (!std::isfinite(level)) level = 0;
   cv::Mat1d out = matrix_view<cv::Mat1d>(smooth);
   int const side = filter_side(sigma);
-  cv::GaussianBlur(matrix_view<cv::Mat1d>(known), out, {side, side}, sigma, sigma, cv::BORDER_REFLECT_101);
+  call_opencv(ErrorCode::internal, "filter the frames", [&] {
+    cv::GaussianBlur(matrix_view<cv::Mat1d>(known), out, {side, side}, sigma, sigma, cv::BORDER_REFLECT_101);
+  });
   return smooth;
 }
 
 /// Returns the factor by which the filter reduces the standard deviation of uncorrelated noise.
 double noise_reduction(double sigma) {
-  cv::Mat const kernel = cv::getGaussianKernel(filter_side(sigma), sigma, CV_64F);
-  // for a separable kernel, equals the root of the sum of squares of the two-dimensional kernel
-  return kernel.dot(kernel);
+  return call_opencv(ErrorCode::internal, "filter the frames", [&] {
+    cv::Mat const kernel = cv::getGaussianKernel(filter_side(sigma), sigma, CV_64F);
+    // for a separable kernel, equals the root of the sum of squares of the two-dimensional kernel
+    return kernel.dot(kernel);
+  });
 }
 
 /// Returns the offset of the vertex of the parabola through three levels, at most half a pixel.

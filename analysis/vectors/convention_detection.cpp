@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "analysis/vectors/convention_fit.h"
-#include "analysis/vectors/convention_report.h"
 #include "analysis/vectors/scale_and_shift.h"
 
 namespace gladstone::inline vectors {
@@ -128,6 +127,8 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   // only, a significant improvement suffices: software with image deformation measures at the nodes of its grid, but
   // half a pixel away from them with a single pass.
   DetectedConventions result;
+  result.format = file.format;
+  result.all_zero = is_zero(file.field);
   ConventionFit chosen = fits.front();
   for (std::size_t i = 1; i < own.size(); ++i) {
     bool const clear = same_axes(fits[i].conventions, chosen.conventions) || fits[i].spread_px < 0.9 * chosen.spread_px;
@@ -148,13 +149,16 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   bool const is_own = std::find(own.begin(), own.end(), result.best.conventions) != own.end();
   if (reads && !is_own && result.best.spread_px < clearly * chosen.spread_px &&
       log_likelihood_statistic(result.best, chosen) > 16.0) {
-    result.mistake = {describe_difference(result.best.conventions, chosen.conventions),
-                      describe(result.best.conventions), result.best, chosen};
+    auto const interpreted_as = [&](VectorConventions const& interpretation) {
+      return MistakeReason{MistakeReason::Kind::interpretation, interpretation, chosen.conventions};
+    };
+    result.mistake = {
+        {interpreted_as(result.best.conventions)}, describe(result.best.conventions), result.best, chosen};
     // add other mistakes that this displacement does not distinguish from the first one
     for (ConventionFit const& other : result.tried) {
       if (same_axes(other.conventions, result.best.conventions) || !fits_as_well(other, result.best)) continue;
       if (convention_penalty(other.conventions, own) > convention_penalty(result.best.conventions, own) + 0.5) continue;
-      result.mistake.text += ", or " + describe_difference(other.conventions, chosen.conventions);
+      result.mistake.reasons.push_back(interpreted_as(other.conventions));
     }
   }
   if (result.verdict != Verdict::cannot_be_told) {
@@ -176,8 +180,6 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   VectorConventions without = chosen.conventions;
   without.offset_px = 0.0;
   result.without_offset = fit_within(few, without, truth, image_rows, most);
-  result.report =
-      result.verdict == Verdict::no_convention_fits ? misfit_report(file, result) : found_report(file, result);
   return result;
 }
 

@@ -35,18 +35,35 @@ struct VectorCorrection {
   friend bool operator==(VectorCorrection const&, VectorCorrection const&) = default;
 };
 
+/// A possible reason why vectors do not follow the conventions of their format; see describe_reason().
+struct MistakeReason {
+  enum class Kind {
+    interpretation,  ///< no other difference than that between `interpretation` and `own`
+    factor,          ///< displacements are `value` times the truth [1]; NaN: not determined
+    offset,          ///< displacements are `value` greater than the truth [px]
+    shift,           ///< positions are shifted by `value`, to within `uncertainty` [px]
+    position_factor  ///< positions are `value` times the true ones [1]
+  };
+  Kind kind = Kind::interpretation;
+  VectorConventions interpretation{};  ///< conventions in which the vectors were probably written
+  VectorConventions own{};             ///< conventions of the format, by which the vectors are read
+  Vec2d value{};                       ///< factor [1], or offset or shift [px] in our axes
+  Vec2d uncertainty{};                 ///< three standard errors of a shift [px]
+};
+
+/// Uncertainty above which a component of a shift counts as not determined [px].
+inline constexpr double max_shift_uncertainty_px = 2.0;
+
 /// Probable error in foreign vectors: an interpretation other than the format's own fits the truth clearly better.
 struct ProbableMistake {
-  /// Description such as "v points up" or "displacements are 10 times the truth"; empty: no mistake found.
-  std::string text;
+  /// Reasons that the vectors do not distinguish, the likeliest first; empty: no mistake found.
+  std::vector<MistakeReason> reasons;
   std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words correct it
   ConventionFit corrected_fit{};  ///< fit of the vectors after correction of the mistake
   ConventionFit as_read{};        ///< fit of the vectors as the format defines them, without correction
   VectorCorrection correction{};  ///< correction of the file's numbers that removes the mistake
 
-  bool found() const { return !text.empty(); }
-  /// Returns a warning that contains the text, both rms differences and the remedy.
-  std::string warning() const;
+  bool found() const { return !reasons.empty(); }
 };
 
 /// Result of detect_conventions().
@@ -60,6 +77,7 @@ struct DetectedConventions {
     cannot_be_told,
     no_convention_fits,  ///< neither `fits` nor `noisy`, although the truth is large and smooth enough to decide
   };
+  std::string format;             ///< format of the vectors
   VectorConventions conventions;  ///< conventions to be used: the best fitting of the format's own conventions
   Verdict verdict = Verdict::fits;
   ProbableMistake mistake;
@@ -71,8 +89,7 @@ struct DetectedConventions {
   std::vector<ConventionFit> tried;
   /// True if another choice of axes or signs fits equally well; `conventions` are then the format's own.
   bool ambiguous = false;
-  /// Report for the log: one line, or, for no_convention_fits, the tried interpretations and probable causes.
-  std::string report;
+  bool all_zero = false;  ///< true if no displacement differs from 0
 };
 
 /// Minimum rms of the truth for which conventions can be distinguished: approximately the error of a correlation of

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/vectors/pair_verdict.h"
 #include "render/base/vec.h"
 #include "render/base/warning.h"
 
@@ -62,9 +63,8 @@ struct DisplacementField {
   /// Number of columns of the grid, whose vectors are stored row by row; 0: scattered points.
   int columns = 0;
   int rows = 0;
-  Warnings warnings;  ///< warnings about the measurement as a whole
-  /// Result of the decorrelation test: "correlates", "does not correlate" or "not judged: REASON"; empty: not tested.
-  std::string verdict;
+  Warnings warnings;      ///< warnings about the measurement as a whole
+  PairVerdict verdict{};  ///< whether the frames correlate
   /// Method that estimated sigma_px: a value of correlate.uncertainty, or "dot_fit" for tracked dots; empty: unknown.
   std::string uncertainty_method;
   /// Key that selected the method, e.g. `correlate.uncertainty = "auto"`, see record_uncertainty(); empty: unknown.

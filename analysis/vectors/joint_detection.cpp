@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "analysis/vectors/convention_fit.h"
-#include "analysis/vectors/convention_report.h"
 #include "analysis/vectors/scale_and_shift.h"
 
 namespace gladstone::inline vectors {
@@ -93,7 +92,7 @@ std::vector<Candidate> other_axes(std::vector<DetectedConventions> const& detect
       if (known == all.end()) {
         known = all.insert(all.end(), Candidate{});
         known->mistake.corrected_fit.conventions = fit.conventions;
-        known->mistake.text = describe_difference(fit.conventions, chosen);
+        known->mistake.reasons.push_back({MistakeReason::Kind::interpretation, fit.conventions, chosen});
       }
       known->add(fit, samples[i].as_read, i);
     }
@@ -195,7 +194,8 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
   for (Candidate const& other : all) {
     bool const as_likely = candidate_penalty(other, own) < candidate_penalty(*best, own) + 0.5;
     if (alike(other, *best) || most - other.sum > close || !as_likely) continue;
-    result.mistake.text += ", or " + other.mistake.text;
+    result.mistake.reasons.insert(result.mistake.reasons.end(), other.mistake.reasons.begin(),
+                                  other.mistake.reasons.end());
     result.mistake.conventions.clear();
     result.ambiguous = true;
   }

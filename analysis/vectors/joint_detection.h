@@ -20,8 +20,8 @@ struct CommonConventions {
   /// Conventions to be used: those of the format's own conventions that fit all files best.
   VectorConventions conventions;
   std::vector<DetectedConventions> detected;  ///< results for the single files, in the order of the files
-  /// Mistake that all files have in common; if several are indistinguishable, the text names all of them and
-  /// `conventions` is empty.
+  /// Mistake that all files have in common; if several are indistinguishable, it has a reason for each of
+  /// them and `conventions` is empty.
   ProbableMistake mistake;
   /// Indices of files with an individual mistake: either its correction makes the vectors follow the truth, or they do
   /// not follow the truth at all, although vectors from windows of 64 px would.

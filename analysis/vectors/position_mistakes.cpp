@@ -19,7 +19,6 @@ VectorCorrection shift_by(Vec2d shift_px) {
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double vague_px = 2.0;  ///< uncertainty above which a component of the shift counts as not determined [px]
 
 /// Shift of the positions, and its uncertainty.
 struct FittedShift {
@@ -51,7 +50,7 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
     double const variance = 8.0 * middle / components;
     auto const three_errors = [&](double curvature) { return 3.0 * std::sqrt(variance / std::max(curvature, 0.0)); };
     FittedShift next;
-    if (xx > 0.0 && determinant > 0.0 && three_errors(determinant / std::max(xx, yy)) < vague_px) {
+    if (xx > 0.0 && determinant > 0.0 && three_errors(determinant / std::max(xx, yy)) < max_shift_uncertainty_px) {
       next.shift_px = fitted.shift_px - Vec2d{(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant};
       next.uncertainty_px = {three_errors(determinant / yy), three_errors(determinant / xx)};
     } else if (xx > yy) {  // only x is determined, for example in a shear flow whose displacement does not vary along y
@@ -65,27 +64,6 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
     fitted = next;
   }
   return fitted;
-}
-
-/// Describes the shift of the file's positions that the correction `fitted` removes, and names a component that the
-/// displacement does not determine.
-std::string describe_shift(FittedShift const& fitted) {
-  auto const digit = [](double uncertainty) { return uncertainty < 0.1 ? 0.01 : 0.1; };  // last digit [px]
-  auto const rounded = [&](double value, double uncertainty) {
-    return 0.0 - digit(uncertainty) * std::round(value / digit(uncertainty));
-  };
-  auto const along = [&](char axis, double value, double uncertainty, char other) {
-    return fmt::format(
-        "positions are shifted by {:.4g} px in {}, to within {:.2g} px (this displacement does not determine a shift "
-        "in {})",
-        rounded(value, uncertainty), axis, std::max(digit(uncertainty), uncertainty), other);
-  };
-  auto const [shift, uncertainty] = fitted;
-  if (!(uncertainty.y < vague_px) && uncertainty.x < vague_px) return along('x', shift.x, uncertainty.x, 'y');
-  if (!(uncertainty.x < vague_px) && uncertainty.y < vague_px) return along('y', shift.y, uncertainty.y, 'x');
-  double const larger = std::max(uncertainty.x, uncertainty.y);
-  return fmt::format("positions are shifted by ({:.4g}, {:.4g}) px, each to within {:.2g} px", rounded(shift.x, larger),
-                     rounded(shift.y, larger), std::max(digit(larger), larger));
 }
 
 }  // namespace
@@ -121,7 +99,9 @@ ProbableMistake find_shift(Search const& search) {
   FittedShift const fitted = refine_shift(search, {best, {finest, finest}});
   ConventionFit const corrected_fit = search.fit(search.few, shift_by(fitted.shift_px));
   if (!search.is_improved(corrected_fit)) return {};
-  return {describe_shift(fitted), {}, corrected_fit, search.own, shift_by(fitted.shift_px)};
+  VectorConventions const& own = search.own.conventions;
+  MistakeReason const reason{MistakeReason::Kind::shift, own, own, -fitted.shift_px, fitted.uncertainty_px};
+  return {{reason}, {}, corrected_fit, search.own, shift_by(fitted.shift_px)};
 }
 
 ProbableMistake find_place_factor(Search const& search) {
@@ -147,8 +127,9 @@ ProbableMistake find_place_factor(Search const& search) {
   if (!search.is_improved(corrected_fit)) return {};
   VectorConventions words = search.own.conventions;
   words.px = std::stod(fmt::format("{:.3g}", words.px.value_or(1.0) * best));
-  return {fmt::format("positions are {:.3g} times the true ones, as if in another unit than px", best), describe(words),
-          corrected_fit, search.own, scaled(best)};
+  VectorConventions const& own = search.own.conventions;
+  MistakeReason const reason{MistakeReason::Kind::position_factor, own, own, {best, best}};
+  return {{reason}, describe(words), corrected_fit, search.own, scaled(best)};
 }
 
 }  // namespace gladstone::inline vectors

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "analysis/vectors/convention_fit.h"
-#include "analysis/vectors/convention_report.h"
 #include "analysis/vectors/position_mistakes.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone::inline vectors {
 namespace {
@@ -74,18 +74,12 @@ ProbableMistake find_factor(Search const& search) {
   correction.factor = search.own.conventions.exchanges_components() ? Vec2d{factor.y, factor.x} : factor;
   ConventionFit const corrected_fit = search.fit(search.few, correction);
   if (!search.is_improved(corrected_fit)) return {};
-  std::string text;
-  if (both)
-    text = fmt::format("displacements are {:.3g} times the truth, as if in another unit than px", factor.x);
-  else if (!determines(&Vec2d::y))
-    text = fmt::format("u is {:.3g} times the truth (v is too small for an estimate)", factor.x);
-  else if (!determines(&Vec2d::x))
-    text = fmt::format("v is {:.3g} times the truth (u is too small for an estimate)", factor.y);
-  else
-    text = fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
   VectorConventions scaled = search.own.conventions;
+  MistakeReason reason{MistakeReason::Kind::factor, scaled, scaled, factor};
+  for (auto const component : {&Vec2d::x, &Vec2d::y})
+    if (!both && !determines(component)) reason.value.*component = not_a_number;
   scaled.px_per_frame = std::stod(fmt::format("{:.3g}", scaled.px_per_frame.value_or(1.0) * factor.x));
-  return {text, both ? describe(scaled) : std::string(), corrected_fit, search.own, correction};
+  return {{reason}, both ? describe(scaled) : std::string(), corrected_fit, search.own, correction};
 }
 
 /// Searches for a constant that is added to all displacements.
@@ -106,9 +100,7 @@ ProbableMistake find_offset(Search const& search) {
   }
   constexpr double least = 0.2;  // minimum offset that is reported; larger than the bias by peak locking [px]
   if (!(std::max(std::abs(offset.x), std::abs(offset.y)) > least)) return {};
-  auto const rounded = [](double value) { return 0.0 + std::round(1000.0 * value) / 1000.0; };
-  std::string const text =
-      fmt::format("displacements are ({:.4g}, {:.4g}) px greater than the truth", rounded(offset.x), rounded(offset.y));
+  MistakeReason const reason{MistakeReason::Kind::offset, search.own.conventions, search.own.conventions, offset};
   // Apply the offset to the columns of the file, whose signs and order may differ.
   VectorConventions const& c = search.own.conventions;
   if (c.swapped) offset = -offset;
@@ -117,7 +109,7 @@ ProbableMistake find_offset(Search const& search) {
   correction.offset_px = c.exchanges_components() ? Vec2d{offset.y, offset.x} : offset;
   ConventionFit const corrected_fit = search.fit(search.few, correction);
   if (!search.is_improved(corrected_fit)) return {};
-  return {text, {}, corrected_fit, search.own, correction};
+  return {{reason}, {}, corrected_fit, search.own, correction};
 }
 
 }  // namespace
@@ -186,7 +178,7 @@ ProbableMistake find_scale_or_shift(Search search, std::vector<ConventionFit> co
     double const unlikely = convention_penalty(fit.conventions, own);
     if (!found.found() || !(unlikely < least_unlikely)) continue;
     least_unlikely = unlikely;
-    found.text = describe_difference(fit.conventions, first) + " and " + found.text;
+    found.reasons.front().own = first;
     found.as_read = as_read;
     best = std::move(found);
   }

@@ -190,7 +190,7 @@ void bind_field(nb::module_& module) {
       .def_prop_ro("columns", [](MeasuredField const& self) { return self.field.columns; })
       .def_prop_ro("rows", [](MeasuredField const& self) { return self.field.rows; })
       .def_prop_ro("warnings", [](MeasuredField const& self) { return warning_texts(self.field.warnings); })
-      .def_prop_ro("verdict", [](MeasuredField const& self) { return self.field.verdict; })
+      .def_prop_ro("verdict", [](MeasuredField const& self) { return verdict_text(self.field.verdict); })
       .def_prop_ro("uncertainty_method", [](MeasuredField const& self) { return self.field.uncertainty_method; })
       .def_prop_ro("uncertainty_key", [](MeasuredField const& self) { return self.field.uncertainty_key; })
       .def_rw("name", &MeasuredField::name)

@@ -43,7 +43,7 @@ void translate(std::exception_ptr const& thrown, void* /*payload*/) {
     set_error(data_error_name(error.code()), error.place(), error.message(), error_code_name(error.code()),
               error.key());
   } catch (OutputError const& error) {
-    set_error("OutputError", error.place(), error.message());
+    set_error("OutputError", error.place(), error.message(), error_code_name(error.code()));
   } catch (DeviceError const& error) {
     set_error("DeviceError", std::string(error.what()));
   } catch (std::filesystem::filesystem_error const& error) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <new>
-#include <string_view>
 
 namespace gladstone::inline base {
 namespace {
@@ -63,6 +62,8 @@ std::string error_code_name(ErrorCode code) {
       return "memory";
     case ErrorCode::output:
       return "output";
+    case ErrorCode::overwrites_input:
+      return "overwrites_input";
     case ErrorCode::device:
       return "device";
     case ErrorCode::arguments:
@@ -87,8 +88,7 @@ bool is_out_of_memory(std::exception const& error) {
   }
   auto const* const own = dynamic_cast<Error const*>(&error);
   return dynamic_cast<std::bad_alloc const*>(&error) || dynamic_cast<std::length_error const*>(&error) ||
-         (own && own->code() == ErrorCode::memory) || dynamic_cast<DeviceMemoryError const*>(&error) ||
-         std::string_view(error.what()).find("(-4:Insufficient memory)") != std::string_view::npos;
+         (own && own->code() == ErrorCode::memory) || dynamic_cast<DeviceMemoryError const*>(&error);
 }
 
 std::string format_user_message(std::exception const& error) {

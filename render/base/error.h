@@ -33,11 +33,12 @@ enum class ErrorCode {
   no_valid_vector,  ///< a vector field without a single valid vector
   memory,           ///< a computation that needs more memory than is available
   // Errors of outputs, accelerators and arguments, and of the program itself
-  output,       ///< an output that cannot be written or would overwrite other data
-  device,       ///< an accelerator that is absent, out of memory or failing
-  arguments,    ///< a command line or call whose arguments are incomplete or contradictory
-  interrupted,  ///< a run that the user stopped by Ctrl-C
-  internal,     ///< an unexpected error of gladstone or of a library
+  output,            ///< an output that cannot be written or would overwrite other data
+  overwrites_input,  ///< an output that would overwrite an input of the same command
+  device,            ///< an accelerator that is absent, out of memory or failing
+  arguments,         ///< a command line or call whose arguments are incomplete or contradictory
+  interrupted,       ///< a run that the user stopped by Ctrl-C
+  internal,          ///< an unexpected error of gladstone or of a library
 };
 
 /// Returns the name of a code: "out_of_range".
@@ -107,10 +108,11 @@ class DataError : public Error {
   DataError(ErrorCode code, KeyPath const& key, std::string const& message) : Error(code, key, message) {}
 };
 
-/// An output that cannot be written (read-only directory, full disk). Exit code 2.
+/// An output that cannot be written (read-only directory, full disk) or would overwrite other data. Exit code 2.
 class OutputError : public Error {
  public:
-  OutputError(std::string const& path, std::string const& message) : Error(ErrorCode::output, path, message) {}
+  OutputError(std::string const& path, std::string const& message) : OutputError(ErrorCode::output, path, message) {}
+  OutputError(ErrorCode code, std::string const& path, std::string const& message) : Error(code, path, message) {}
 };
 
 /// An accelerator that is absent, out of memory or failing. Exit code 5.
@@ -133,8 +135,7 @@ class Interrupted : public Error {
 };
 
 /// Returns true if an error means that memory is exhausted: std::bad_alloc, std::length_error (a size refused before
-/// its allocation), an Error of code `memory`, DeviceMemoryError, a SetupError with a problem of code `memory`, or an
-/// OpenCV error of code -4.
+/// its allocation), an Error of code `memory`, DeviceMemoryError, or a SetupError with a problem of code `memory`.
 bool is_out_of_memory(std::exception const& error);
 
 /// Returns the text that is shown to the user for an error. The text of an Error is returned as it is; errors of

@@ -11,6 +11,7 @@
 
 #include "render/base/error.h"
 #include "render/files/folder_replacement.h"
+#include "render/files/output_destination.h"
 
 namespace gladstone::inline files {
 namespace {
@@ -79,9 +80,7 @@ void refuse_recorded_input(std::string const& path, std::string const& asked) {
   std::lock_guard const lock(record().mutex);
   auto const input = record().inputs.find(file_id(file));
   if (input == record().inputs.end()) return;
-  throw OutputError(asked, "would be overwritten, but is an input of this command" +
-                               (asked == input->second ? std::string() : " (as " + input->second + ')') +
-                               "; choose another output");
+  refuse_overwriting(input->second, asked);
 }
 
 void refuse_protected_file(std::string const& path, std::string const& asked) {

@@ -91,15 +91,19 @@ std::string special_file(std::string const& path) {
   return S_ISSOCK(there.st_mode) ? "a socket" : "a device";
 }
 
+void refuse_overwriting(std::string const& input, std::string const& output) {
+  throw OutputError(ErrorCode::overwrites_input, output,
+                    "would be overwritten, but is an input of this command" +
+                        (output == input ? std::string() : " (as " + input + ')') + "; choose another output");
+}
+
 void refuse_inputs_as_outputs(std::vector<std::string> const& outputs, std::vector<std::string> const& inputs) {
   std::error_code error;
   for (std::string const& output : outputs) {
     for (std::string const& input : inputs) {
       bool const same = fs::equivalent(output, input, error) && !error;
       if (!same) continue;
-      throw OutputError(output, "would be overwritten, but is an input of this command" +
-                                    (output == input ? std::string() : " (as " + input + ')') +
-                                    "; choose another output");
+      refuse_overwriting(input, output);
     }
   }
 }

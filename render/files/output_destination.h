@@ -36,9 +36,12 @@ class OutputDestination {
 /// Returns "a pipe", "a socket" or "a device" for the path of one; empty for files, directories and missing paths.
 std::string special_file(std::string const& path);
 
+/// @throws OutputError of code overwrites_input that names both
+[[noreturn]] void refuse_overwriting(std::string const& input, std::string const& output);
+
 /// Checks that no output is the same file or directory as an input, under any name: also through links or as another
 /// hard link.
-/// @throws OutputError naming both
+/// @throws the exceptions of refuse_overwriting()
 void refuse_inputs_as_outputs(std::vector<std::string> const& outputs, std::vector<std::string> const& inputs);
 
 }  // namespace gladstone::inline files

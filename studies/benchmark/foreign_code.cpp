@@ -114,7 +114,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
     if (any_tells && none_fits && !common.mistake.found()) {
       auto const worst = std::find_if(common.detected.begin(), common.detected.end(), no_convention_fits);
       throw DataError(ErrorCode::inconsistent, cases_[static_cast<std::size_t>(worst - common.detected.begin())].path,
-                      worst->report);
+                      convention_report(*worst));
     }
     conventions = common.conventions;
     reading_ = fmt::format(
@@ -124,7 +124,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
     if (decisive.conventions == conventions && conventions.offset_px != 0.0) reading_ += "; " + offset_report(decisive);
     if (common.ambiguous && !common.mistake.found())
       reading_ += "; another interpretation fits as well, and that of the format is used";
-    if (std::string mistake = describe_mistake(common); !mistake.empty()) mistakes_.push_back(std::move(mistake));
+    if (std::string mistake = describe_mistakes(common); !mistake.empty()) mistakes_.push_back(std::move(mistake));
   }
   std::vector<BenchmarkRow> rows;
   std::size_t wrong = 0;
@@ -148,7 +148,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
   return rows;
 }
 
-std::string ForeignCode::describe_mistake(CommonConventions const& common) const {
+std::string ForeignCode::describe_mistakes(CommonConventions const& common) const {
   ProbableMistake const& mistake = common.mistake;
   if (mistake.found()) {
     std::string const& decisive = cases_[common.decisive].name;
@@ -162,7 +162,7 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
     return fmt::format(
         "{}: likely mistake: {} (by {}: without this the rms difference from the truth would be {:.3g} px, as scored "
         "it is {:.3g} px); {}",
-        name_, mistake.text, decisive, mistake.corrected_fit.rms_px, mistake.as_read.rms_px, cure);
+        name_, describe_mistake(mistake), decisive, mistake.corrected_fit.rms_px, mistake.as_read.rms_px, cure);
   }
   if (common.mistaken.empty()) return {};
   constexpr std::size_t most_named = 3;
@@ -170,8 +170,9 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
   for (std::size_t k = 0; k < std::min(most_named, common.mistaken.size()); ++k) {
     std::size_t const i = common.mistaken[k];
     ProbableMistake const& own = common.detected[i].mistake;
-    found += fmt::format("{}{}: {}", found.empty() ? "" : "; ", cases_[i].name,
-                         own.found() ? own.text : "the vectors do not follow the truth in any interpretation");
+    found +=
+        fmt::format("{}{}: {}", found.empty() ? "" : "; ", cases_[i].name,
+                    own.found() ? describe_mistake(own) : "the vectors do not follow the truth in any interpretation");
   }
   if (common.mistaken.size() > most_named)
     found += fmt::format("; and in {} more", common.mistaken.size() - most_named);

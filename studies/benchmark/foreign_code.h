@@ -41,7 +41,7 @@ class ForeignCode {
     std::string name, path;
     int columns = 0;
   };
-  std::string describe_mistake(CommonConventions const& common) const;
+  std::string describe_mistakes(CommonConventions const& common) const;
 
   std::string name_;
   std::map<std::string, std::string> files_;  ///< file names by case

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "analysis/errors/scattered_grid.h"
+#include "analysis/vectors/convention_report.h"
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
@@ -110,8 +111,9 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
       file, [&map](Vec2d c) { return map.at(c); }, camera.rows);
   bool const misfits = detected.verdict == Verdict::no_convention_fits;
   if (misfits && check == ConventionCheck::require) {
-    throw DataError(ErrorCode::inconsistent, path,
-                    detected.report + ", or specify its reading with --conventions if the file cannot be corrected");
+    throw DataError(
+        ErrorCode::inconsistent, path,
+        convention_report(detected) + ", or specify its reading with --conventions if the file cannot be corrected");
   }
   if (misfits) {
     log_warning({WarningCode::implausible, path,
@@ -120,9 +122,9 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
                              "is more accurate than this, check the order of the frames, the axes and the units",
                              detected.fit.rms_px, detected.fit.signal_px)});
   } else if (detected.mistake.found()) {
-    log_warning({WarningCode::implausible, path, "likely mistake: " + detected.mistake.warning()});
+    log_warning({WarningCode::implausible, path, "likely mistake: " + mistake_warning(detected.mistake)});
   } else if (detected.verdict == Verdict::cannot_be_told || has_rival_of_its_own(file, detected)) {
-    log_warning({WarningCode::assumed, path, detected.report + "; specify it with --conventions"});
+    log_warning({WarningCode::assumed, path, convention_report(detected) + "; specify it with --conventions"});
   }
   return detected;
 }
@@ -153,7 +155,7 @@ MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSet
     vectors.report = file.format + " vectors, as specified: " + describe(file.conventions);
   } else if (check != ConventionCheck::none && truth) {
     vectors.detected = detect(file, name, *truth, camera, check);
-    vectors.report = vectors.detected->report;
+    vectors.report = convention_report(*vectors.detected);
     file.conventions = vectors.detected->conventions;
   } else if (check != ConventionCheck::none) {
     vectors.report =

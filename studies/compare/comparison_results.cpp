@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/errors/uncertainty_quality.h"
+#include "analysis/vectors/convention_report.h"
 #include "studies/case/json_text.h"
 #include "studies/compare/comparison_kind.h"
 
@@ -50,7 +51,8 @@ nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
   ProbableMistake const& mistake = detected.mistake;
   json["likely_mistake"] = nullptr;
   if (mistake.found()) {
-    json["likely_mistake"] = {{"text", mistake.text}, {"rms_without_px", number_or_null(mistake.corrected_fit.rms_px)}};
+    json["likely_mistake"] = {{"text", describe_mistake(mistake)},
+                              {"rms_without_px", number_or_null(mistake.corrected_fit.rms_px)}};
     if (!mistake.conventions.empty()) json["likely_mistake"]["conventions"] = mistake.conventions;
   }
   json["ambiguous"] = detected.ambiguous;

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/vectors/convention_fit.h"
 #include "analysis/vectors/convention_report.h"
 #include "render/base/units.h"
 #include "tests/support/numbers_in.h"
@@ -62,9 +63,10 @@ TEST(DetectConventions, FindsEveryChoiceOfAxesSignsAndOffset) {
                 detect_conventions(written_by(c, image_rows, 0.0), asymmetric, image_rows);
             EXPECT_EQ(found.conventions, VectorConventions{})
                 << "the vectors are read by the conventions of the format";
-            EXPECT_EQ(found.best.conventions, c) << describe(c) << " -> " << found.report;
-            EXPECT_EQ(found.mistake.found(), c != VectorConventions{}) << describe(c) << " -> " << found.report;
-            EXPECT_FALSE(found.ambiguous) << found.report;
+            EXPECT_EQ(found.best.conventions, c) << describe(c) << " -> " << convention_report(found);
+            EXPECT_EQ(found.mistake.found(), c != VectorConventions{})
+                << describe(c) << " -> " << convention_report(found);
+            EXPECT_FALSE(found.ambiguous) << convention_report(found);
             EXPECT_LT(found.best.rms_px, 1e-12);
           }
         }
@@ -131,19 +133,21 @@ Vec2d noise(std::size_t i) {
 
 using Verdict = DetectedConventions::Verdict;
 
-/// Returns the name of a mistake: the frames were exchanged.
-std::string frames_exchanged(VectorFile const& file) {
+using Kind = MistakeReason::Kind;
+
+/// Matches a reason: the frames were exchanged.
+auto frames_exchanged(VectorFile const& file) {
   VectorConventions reading = file.conventions;
   reading.swapped = !reading.swapped;
-  return describe_difference(reading, file.conventions);
+  return testing::Truly([reading](MistakeReason const& one) { return same_axes(one.interpretation, reading); });
 }
 
-/// Returns the name of a mistake: y and v point in the opposite direction.
-std::string axes_reversed(VectorFile const& file) {
+/// Matches a reason: y and v point in the opposite direction.
+auto axes_reversed(VectorFile const& file) {
   VectorConventions reading = file.conventions;
   reading.y_up = !reading.y_up;
   reading.v_up = !reading.v_up;
-  return describe_difference(reading, file.conventions);
+  return testing::Truly([reading](MistakeReason const& one) { return same_axes(one.interpretation, reading); });
 }
 
 // The mistake in a file is reported, but the file is read as its format specifies. A shift by a quarter of a period, an
@@ -153,9 +157,9 @@ TEST(DetectConventions, ReportsProbableError) {
   struct Wrong {
     char const* mistake;
     void (*make)(Vec2d& place, Vec2d& displacement);
-    char const* conventions;       ///< conventions that read it correctly; empty: none
-    std::vector<double> values{};  ///< numbers that the description contains
-    Vec2d shift_px{};              ///< correction of the positions
+    char const* conventions;  ///< conventions that read it correctly; empty: none
+    Kind kind = Kind::interpretation;
+    Vec2d value{};
   };
   for (Wrong const &wrong : {
            Wrong{"v points up", [](Vec2d&, Vec2d&d) { d.y = -d.y; }, "y-down,v-up,offset=0"},
@@ -177,43 +181,50 @@ TEST(DetectConventions, ReportsProbableError) {
                    p += Vec2d{12.0, -4.0};
                  },
                  "",
-                 {12, -4},
-                 {-12.0, 4.0}},
+                 Kind::shift,
+                 {12.0, -4.0}},
            Wrong{"displacements in another unit",
                  [](Vec2d&, Vec2d&d) { d = 0.01 * d; },
                  "y-down,v-down,offset=0,px/frame=0.01",
-                 {0.01}},
+                 Kind::factor,
+                 {0.01, 0.01}},
            Wrong{"displacements in a smaller unit",
                  [](Vec2d&, Vec2d&d) { d = 10.0 * d; },
                  "y-down,v-down,offset=0,px/frame=10",
-                 {10}},
+                 Kind::factor,
+                 {10.0, 10.0}},
            Wrong{"v points up, and displacements are in a smaller unit",
                  [](Vec2d&, Vec2d&d) {
                    d = {10.0 * d.x, -10.0 * d.y};
                  },
                  "y-down,v-up,offset=0,px/frame=10",
-                 {10}},
+                 Kind::factor,
+                 {10.0, 10.0}},
            Wrong{"positions in another unit",
                  [](Vec2d&p, Vec2d&) { p = 1.3 * p; },
                  "y-down,v-down,offset=0,px=1.3",
-                 {1.3}},
+                 Kind::position_factor,
+                 {1.3, 1.3}},
        }) {
     VectorFile file = waves_on_a_grid();
     for (std::size_t i = 0; i < file.field.size(); ++i)
       wrong.make(file.field.position_px[i], file.field.displacement_px[i]);
     DetectedConventions const found = detect_conventions(file, waves, 200);
-    EXPECT_EQ(found.verdict, Verdict::mistaken) << wrong.mistake << ": " << found.report;
+    EXPECT_EQ(found.verdict, Verdict::mistaken) << wrong.mistake << ": " << convention_report(found);
     EXPECT_EQ(found.mistake.conventions, wrong.conventions) << wrong.mistake;
-    auto const values = numbers_in(found.mistake.text);
-    ASSERT_GE(values.size(), wrong.values.size()) << found.mistake.text;
-    EXPECT_TRUE(std::equal(wrong.values.begin(), wrong.values.end(), values.begin())) << found.mistake.text;
-    EXPECT_LT(length(found.mistake.correction.shift_px - wrong.shift_px), 0.1) << wrong.mistake;
+    ASSERT_EQ(found.mistake.reasons.size(), 1u) << wrong.mistake;
+    MistakeReason const& reason = found.mistake.reasons[0];
+    EXPECT_EQ(reason.kind, wrong.kind) << wrong.mistake;
+    EXPECT_LT(length(reason.value - wrong.value), wrong.kind == Kind::shift ? 0.1 : 0.005 * length(wrong.value) + 1e-9)
+        << wrong.mistake;
+    EXPECT_LT(length(found.mistake.correction.shift_px + (wrong.kind == Kind::shift ? wrong.value : Vec2d{})), 0.1)
+        << wrong.mistake;
     EXPECT_EQ(found.conventions, file.conventions) << "the file is read by the conventions of its format";
     // The vectors have no noise. Shifts are known to 0.1 px, which along a wave of 37 px is 2 pi 0.1 / 37 = 1.7 % of
     // the amplitude; factors are stored to three digits, 0.5 %.
     EXPECT_LT(found.mistake.corrected_fit.rms_px, 0.02 * found.mistake.as_read.rms_px) << wrong.mistake;
     EXPECT_EQ(found.tried.size(), 32u) << "2 directions of y, 2 of v, 2 orders of the frames, 4 exchanges of columns";
-    EXPECT_THAT(found.report, HasSubstr(found.mistake.text));
+    EXPECT_THAT(convention_report(found), HasSubstr(describe_mistake(found.mistake)));
   }
 }
 
@@ -229,7 +240,7 @@ TEST(DetectConventions, DistinguishesScaleFromWindowAveraging) {
   ProbableMistake const mistake = detect_conventions(file, slow, 200).mistake;
   EXPECT_NEAR(mistake.correction.factor.x, 0.25, 1e-3);
   EXPECT_NEAR(mistake.correction.factor.y, 0.25, 1e-3);
-  EXPECT_THAT(numbers_in(mistake.text), testing::ElementsAre(0.25));
+  EXPECT_THAT(numbers_in(describe_mistake(mistake)), testing::ElementsAre(0.25));
 }
 
 // A rotation about the middle is symmetric under an exchange of the frames with a reflection of both axes: both
@@ -246,8 +257,9 @@ TEST(DetectConventions, ReportsAllIndistinguishableErrors) {
     }
   }
   DetectedConventions const found = detect_conventions(file, vortex, 200);
-  EXPECT_THAT(found.mistake.text, testing::StartsWith(frames_exchanged(file)));
-  EXPECT_THAT(found.mistake.text, HasSubstr(axes_reversed(file)));
+  ASSERT_FALSE(found.mistake.reasons.empty());
+  EXPECT_THAT(found.mistake.reasons.front(), frames_exchanged(file));
+  EXPECT_THAT(found.mistake.reasons, testing::Contains(axes_reversed(file)));
   // Vectors of the opposite sign differ by twice the truth. In the corners that exceeds the limit of three times the
   // signal (ConventionFit), which leaves 1.95 times the signal if the components are limited and 1.99 if the vectors
   // are.
@@ -274,13 +286,15 @@ TEST(DetectConventions, ReportsMostProbableOfSimilarFits) {
   }
   VectorFile exchanged = file;
   for (Vec2d& d : exchanged.field.displacement_px) d = -d;
-  EXPECT_THAT(detect_conventions(exchanged, vortex, 200).mistake.text,
-              AllOf(testing::StartsWith(frames_exchanged(file)), HasSubstr(axes_reversed(file))));
+  std::vector<MistakeReason> const reasons = detect_conventions(exchanged, vortex, 200).mistake.reasons;
+  ASSERT_FALSE(reasons.empty());
+  EXPECT_THAT(reasons.front(), frames_exchanged(file));
+  EXPECT_THAT(reasons, testing::Contains(axes_reversed(file)));
   VectorFile shifted = file;
   for (Vec2d& p : shifted.field.position_px) p.x += 16.0;
   ProbableMistake const shift = detect_conventions(shifted, vortex, 200).mistake;
   EXPECT_NEAR(shift.correction.shift_px.x, -16.0, 0.5);
-  EXPECT_NEAR(numbers_in(shift.text).at(0), 16.0, 0.5) << shift.text;
+  EXPECT_EQ(shift.reasons.front().kind, Kind::shift);
   EXPECT_FALSE(detect_conventions(file, vortex, 200).mistake.found());
 }
 
@@ -306,7 +320,7 @@ TEST(DetectConventions, ShiftIsKnownToItsResolution) {
         file.field.position_px.push_back(p + shift);
         file.field.displacement_px.push_back(vortex(p) + sigma_px * error);
       }
-      std::string const text = detect_conventions(file, vortex, 200).mistake.text;
+      std::string const text = describe_mistake(detect_conventions(file, vortex, 200).mistake);
       auto const values = numbers_in(text);
       ASSERT_EQ(values.size(), 3u) << text;
       Vec2d const found{values[0], values[1]};
@@ -326,9 +340,9 @@ TEST(DetectConventions, RejectsVectorsThatFitNoConvention) {
     for (std::size_t i = 0; i < file.field.size(); ++i)
       make(file.field.position_px[i], file.field.displacement_px[i], noise(i));
     DetectedConventions const found = detect_conventions(file, waves, 200);
-    EXPECT_EQ(found.verdict, Verdict::no_convention_fits) << found.report;
-    EXPECT_THAT(found.report, AllOf(HasSubstr("v-up,frames-exchanged"),
-                                    HasSubstr(fmt::format("{:.3g} px", found.tried.front().signal_px))));
+    EXPECT_EQ(found.verdict, Verdict::no_convention_fits) << convention_report(found);
+    EXPECT_THAT(convention_report(found), AllOf(HasSubstr("v-up,frames-exchanged"),
+                                                HasSubstr(fmt::format("{:.3g} px", found.tried.front().signal_px))));
   }
 }
 
@@ -342,12 +356,18 @@ TEST(DetectConventions, ReportsOnlyDeterminableConventions) {
     stretched.field.displacement_px[i] = 3.0 * shear(p) + 0.02 * noise(i);
   }
   ProbableMistake const shift = detect_conventions(shifted, shear, 200).mistake;
-  auto const values = numbers_in(shift.text);
-  ASSERT_EQ(values.size(), 2u) << "the shift in y and its resolution, but none in x: " << shift.text;
+  ASSERT_EQ(shift.reasons.size(), 1u);
+  EXPECT_FALSE(shift.reasons[0].uncertainty.x < max_shift_uncertainty_px);
+  EXPECT_LT(shift.reasons[0].uncertainty.y, max_shift_uncertainty_px);
+  auto const values = numbers_in(describe_mistake(shift));
+  ASSERT_EQ(values.size(), 2u) << "the shift in y and its resolution, but none in x: " << describe_mistake(shift);
   EXPECT_EQ(values[0], 15.99);
   ProbableMistake const stretch = detect_conventions(stretched, shear, 200).mistake;
-  EXPECT_THAT(numbers_in(stretch.text), testing::ElementsAre(3));
-  EXPECT_THAT(stretch.text, testing::StartsWith("u "));
+  ASSERT_EQ(stretch.reasons.size(), 1u);
+  EXPECT_EQ(stretch.reasons[0].kind, Kind::factor);
+  EXPECT_NEAR(stretch.reasons[0].value.x, 3.0, 0.05);
+  EXPECT_TRUE(std::isnan(stretch.reasons[0].value.y)) << "v does not determine a factor";
+  EXPECT_THAT(numbers_in(describe_mistake(stretch)), testing::ElementsAre(3));
   EXPECT_NEAR(stretch.correction.factor.x, 3.0, 0.05);
 }
 
@@ -371,7 +391,8 @@ TEST(DetectConventions, NamesVectorsThatAreAllZero) {
       },
       200);
   EXPECT_EQ(found.verdict, Verdict::no_convention_fits);
-  EXPECT_FALSE(found.mistake.found()) << found.mistake.text;
+  EXPECT_TRUE(found.all_zero);
+  EXPECT_FALSE(found.mistake.found()) << describe_mistake(found.mistake);
 }
 
 // Windows of 64 px do not resolve a sine of 32 px: such vectors are noise, not a mistake in the file.
@@ -380,7 +401,7 @@ TEST(DetectConventions, IgnoresWavesThatWindowsCannotResolve) {
   VectorFile file = waves_on_a_grid();
   for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] = 0.1 * noise(i);
   DetectedConventions const found = detect_conventions(file, sine, 200);
-  EXPECT_EQ(found.verdict, Verdict::cannot_be_told) << found.report;
+  EXPECT_EQ(found.verdict, Verdict::cannot_be_told) << convention_report(found);
 }
 
 // With few vectors the best of sixty choices is closer to the truth by chance than zero displacement. Twenty vectors of
@@ -405,7 +426,7 @@ TEST(DetectConventions, AcceptsNoisyVectorsThatFollowTruth) {
   double const three_times = 3.0 * std::sqrt(3.0) * 0.1 / std::sqrt(2.0);  // of numbers uniform in (-1, 1)
   for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] += three_times * noise(i);
   DetectedConventions const found = detect_conventions(file, waves, 200);
-  EXPECT_EQ(found.verdict, Verdict::noisy) << found.report;
+  EXPECT_EQ(found.verdict, Verdict::noisy) << convention_report(found);
   EXPECT_FALSE(found.conventions.y_up);
   EXPECT_FALSE(found.conventions.v_up);
   for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] = three_times * noise(i);
@@ -423,7 +444,7 @@ TEST(DetectConventions, IsUndecidedIfSignalIsBelowNoise) {
       file.field.displacement_px[i] = truth(file.field.position_px[i]) + 0.05 * noise(i);
     }
     DetectedConventions const found = detect_conventions(file, truth, 200);
-    EXPECT_EQ(found.verdict, Verdict::cannot_be_told) << found.report;
+    EXPECT_EQ(found.verdict, Verdict::cannot_be_told) << convention_report(found);
     EXPECT_EQ(found.conventions, file.conventions);
   }
 }
@@ -437,7 +458,7 @@ TEST(DetectConventions, DecidesOnSmallAccurateSignals) {
     file.field.displacement_px[i] = {d.x, -d.y};
   }
   DetectedConventions const found = detect_conventions(file, truth, 200);
-  EXPECT_EQ(found.verdict, Verdict::mistaken) << found.report;
+  EXPECT_EQ(found.verdict, Verdict::mistaken) << convention_report(found);
   EXPECT_EQ(found.mistake.conventions, "y-down,v-up,offset=0");
   EXPECT_TRUE(found.best.conventions.v_up);
 }
@@ -452,15 +473,15 @@ TEST(DetectConventions, ReportsTheOffsetWithAndWithout) {
   EXPECT_LT(found.best.rms_px, 1e-12);
   EXPECT_GT(found.fit.rms_px, 0.003);
   EXPECT_EQ(found.mistake.conventions, "y-down,v-down,offset=-0.5");
-  EXPECT_THAT(numbers_in(found.mistake.text), testing::ElementsAre(0.5));
+  EXPECT_THAT(numbers_in(describe_mistake(found.mistake)), testing::ElementsAre(0.5));
 
   VectorFile half = file;
   half.conventions.offset_px = -0.5;
   DetectedConventions const right = detect_conventions(half, waves, 200);
-  EXPECT_FALSE(right.mistake.found()) << right.report;
+  EXPECT_FALSE(right.mistake.found()) << convention_report(right);
   EXPECT_LT(right.fit.rms_px, 1e-12);
   EXPECT_GT(right.without_offset.rms_px, 0.003);
-  EXPECT_THAT(right.report, AllOf(HasSubstr("x - 0.5 px"), HasSubstr("0.00")));
+  EXPECT_THAT(convention_report(right), AllOf(HasSubstr("x - 0.5 px"), HasSubstr("0.00")));
 
   VectorFile own = waves_on_a_grid();
   own.conventions.offset_px = -0.5;  // as its format specifies; the numbers do not determine it
@@ -492,9 +513,9 @@ VectorFile noisy_waves(double moved, double offset) {
 // whose vectors are not.
 TEST(DetectConventions, DetectsHalfPixelOffsetInNoise) {
   DetectedConventions const deformed = detect_conventions(noisy_waves(0.0, -0.5), waves, 200);
-  EXPECT_EQ(deformed.conventions.offset_px, 0.0) << deformed.report;
+  EXPECT_EQ(deformed.conventions.offset_px, 0.0) << convention_report(deformed);
   DetectedConventions const plain = detect_conventions(noisy_waves(0.5, -0.5), waves, 200);
-  EXPECT_EQ(plain.conventions.offset_px, -0.5) << plain.report;
+  EXPECT_EQ(plain.conventions.offset_px, -0.5) << convention_report(plain);
 }
 
 // One vector in a hundred is wrong by 50 px: it counts as 1 px, and the axes are detected as before.
@@ -502,7 +523,7 @@ TEST(DetectConventions, IsRobustAgainstOutliers) {
   VectorFile file = waves_on_a_grid();
   for (std::size_t i = 0; i < file.field.size(); i += 100) file.field.displacement_px[i] = {50.0, -50.0};
   DetectedConventions const found = detect_conventions(file, waves, 200);
-  EXPECT_NE(found.verdict, Verdict::no_convention_fits) << found.report;
+  EXPECT_NE(found.verdict, Verdict::no_convention_fits) << convention_report(found);
   EXPECT_EQ(found.conventions, VectorConventions{});
 }
 
@@ -563,10 +584,10 @@ TEST(DetectConventions, FindsWhereEachFormatCountsFrom) {
       EXPECT_EQ(file.conventions.mirror, format.upwards ? Mirror::image : Mirror::grid) << format.program;
       EXPECT_EQ(file.conventions.offset_px, -format.first_pixels.front()) << format.program;
       DetectedConventions const found = detect_conventions(file, waves, 200);
-      EXPECT_EQ(found.verdict, Verdict::fits) << format.program << first_pixel << found.report;
+      EXPECT_EQ(found.verdict, Verdict::fits) << format.program << first_pixel << convention_report(found);
       VectorConventions expected = file.conventions;
       expected.offset_px = -first_pixel;
-      EXPECT_EQ(found.conventions, expected) << format.program << first_pixel << found.report;
+      EXPECT_EQ(found.conventions, expected) << format.program << first_pixel << convention_report(found);
       DisplacementField const ours = apply_conventions(file.field, found.conventions, 200);
       VectorFile const grid = waves_on_a_grid();
       ASSERT_EQ(ours.size(), grid.field.size());
@@ -589,9 +610,9 @@ TEST(DetectConventions, DistinguishesOpenPivPassTypes) {
     VectorFile const file = read_vectors(folder + name + ".txt");
     EXPECT_EQ(file.format, "OpenPIV");
     DetectedConventions const found = detect_conventions(file, flow, 160);
-    EXPECT_EQ(found.verdict, Verdict::fits) << found.report;
+    EXPECT_EQ(found.verdict, Verdict::fits) << convention_report(found);
     EXPECT_EQ(describe(found.conventions), std::string("y-up,v-up,offset=") + (offset == 0.0 ? "0" : "-0.5"))
-        << found.report;
+        << convention_report(found);
   }
 }
 

@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/vectors/convention_fit.h"
+#include "analysis/vectors/convention_report.h"
+
 namespace gladstone {
 namespace {
 
@@ -45,11 +48,11 @@ VectorsWithTruth written(Flow const& truth, Flow const& change, Vec2d shift_px =
 
 Vec2d same(Vec2d d) { return d; }
 
-/// Returns the name of a mistake: the frames were exchanged.
-std::string frames_exchanged() {
+/// Matches a reason: the frames were exchanged.
+auto frames_exchanged() {
   VectorConventions reading;
   reading.swapped = true;
-  return describe_difference(reading, {});
+  return testing::Truly([reading](MistakeReason const& one) { return same_axes(one.interpretation, reading); });
 }
 
 void expect_near(Vec2d measured, Vec2d expected, double tolerance) {
@@ -62,12 +65,13 @@ TEST(DetectCommonConventions, UsesDecisiveCasesOnly) {
   // the vortex alone: negative vectors are explained by exchanged frames and by both axes reversed
   CommonConventions const alone = detect_common_conventions({written(vortex, negative)});
   EXPECT_TRUE(alone.ambiguous);
-  EXPECT_THAT(alone.mistake.text, testing::StartsWith(frames_exchanged()));
+  ASSERT_GT(alone.mistake.reasons.size(), 1u);
+  EXPECT_THAT(alone.mistake.reasons.front(), frames_exchanged());
   EXPECT_EQ(alone.mistake.conventions, "") << "one file alone does not determine the correction";
   CommonConventions const both =
       detect_common_conventions({written(uniform, negative), written(vortex, negative), written(off_centre, negative)});
   EXPECT_FALSE(both.ambiguous);
-  EXPECT_EQ(both.mistake.text, frames_exchanged());
+  EXPECT_THAT(both.mistake.reasons, testing::ElementsAre(frames_exchanged()));
   EXPECT_EQ(both.mistake.conventions, "y-down,v-down,frames-exchanged,offset=0");
   EXPECT_NE(both.decisive, 0u) << "a uniform displacement does not distinguish exchanged frames from exchanged columns";
 }
@@ -105,7 +109,7 @@ TEST(DetectCommonConventions, FindsNothingInCommonWhereEachFileHasItsOwnUnit) {
   for (double const factor : {0.3, 2.0, 5.0})
     files.push_back(written(vortex, [factor](Vec2d d) { return factor * d; }));
   CommonConventions const found = detect_common_conventions(files);
-  EXPECT_FALSE(found.mistake.found()) << found.mistake.text;
+  EXPECT_FALSE(found.mistake.found()) << describe_mistake(found.mistake);
   for (DetectedConventions const& one : found.detected) EXPECT_NE(one.mistake.correction.factor, (Vec2d{1.0, 1.0}));
 }
 
@@ -140,10 +144,10 @@ TEST(DetectCommonConventions, OutliersAreNoConventionError) {
       for (Flow const& flow : {Flow(uniform), Flow(vortex), Flow(off_centre)}) {
         files.push_back(with_outliers(written(flow, same), share, 0.05, seed));
         CommonConventions const alone = detect_common_conventions({files.back()});
-        EXPECT_FALSE(alone.mistake.found()) << alone.mistake.text << ' ' << seed << ' ' << share;
+        EXPECT_FALSE(alone.mistake.found()) << describe_mistake(alone.mistake) << ' ' << seed << ' ' << share;
       }
       CommonConventions const all = detect_common_conventions(files);
-      EXPECT_FALSE(all.mistake.found()) << all.mistake.text << ' ' << seed << ' ' << share;
+      EXPECT_FALSE(all.mistake.found()) << describe_mistake(all.mistake) << ' ' << seed << ' ' << share;
     }
   }
 }
@@ -179,7 +183,8 @@ TEST(DetectCommonConventions, FindsMistakesAmongOutliers) {
       for (Flow const& flow : {Flow(uniform), Flow(vortex), Flow(off_centre)})
         files.push_back(with_outliers(written(flow, wrong.change, wrong.shift_px), 0.05, 0.03, seed));
       ProbableMistake const mistake = detect_common_conventions(files).mistake;
-      EXPECT_THAT(mistake.conventions, testing::HasSubstr(wrong.conventions)) << mistake.text << ' ' << seed;
+      EXPECT_THAT(mistake.conventions, testing::HasSubstr(wrong.conventions))
+          << describe_mistake(mistake) << ' ' << seed;
       expect_near(mistake.correction.factor, wrong.correction.factor, 0.05 * wrong.correction.factor.x);
       expect_near(mistake.correction.shift_px, wrong.correction.shift_px, 0.8);
       expect_near(mistake.correction.offset_px, wrong.correction.offset_px, 0.025);
@@ -192,7 +197,7 @@ TEST(DetectCommonConventions, FindsNoCommonErrorAmongThree) {
   CommonConventions const found = detect_common_conventions({written(vortex, [](Vec2d d) { return -d; }),
                                                              written(uniform, [](Vec2d d) { return 10.0 * d; }),
                                                              written(off_centre, same, {16.0, 0.0})});
-  EXPECT_FALSE(found.mistake.found()) << found.mistake.text;
+  EXPECT_FALSE(found.mistake.found()) << describe_mistake(found.mistake);
   for (DetectedConventions const& one : found.detected) EXPECT_TRUE(one.mistake.found());
   EXPECT_EQ(found.mistaken, (std::vector<std::size_t>{0, 1, 2}));
 }

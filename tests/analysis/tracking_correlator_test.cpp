@@ -106,7 +106,7 @@ TEST(TrackingCorrelator, ResolvesOverlapsOfAKnownPattern) {
   EXPECT_GT(known.share, 0.97);
   EXPECT_GT(known.share, found.share);
   EXPECT_EQ(field.columns, 0);
-  EXPECT_EQ(field.verdict, "correlates");
+  EXPECT_EQ(field.verdict.kind, PairVerdict::Kind::correlates);
 }
 
 // Unrelated frames have no displacement, on the grid and at the dots.
@@ -123,7 +123,7 @@ TEST(TrackingCorrelator, FindsNoDisplacementOfUnrelatedFrames) {
   for (char const* output : {"grid", "scattered"}) {
     settings.tracking.output = output;
     DisplacementField const field = make_cpu_correlator(settings)->correlate(reference, flow);
-    EXPECT_EQ(field.verdict, "does not correlate") << output;
+    EXPECT_EQ(field.verdict.kind, PairVerdict::Kind::uncorrelated) << output;
     EXPECT_FALSE(field.warnings.empty()) << output;
     for (std::size_t i = 0; i < field.size(); ++i) EXPECT_FALSE(field.counts(i)) << output << ' ' << i;
   }

@@ -302,6 +302,18 @@ TEST_F(VectorWriters, Hdf5NamesTheAxesOfItsGrids) {
   EXPECT_EQ(file.attribute_of("/grid/x_px", "NAME"), "x_px");
 }
 
+TEST_F(VectorWriters, Hdf5StoresTheVerdictAsCodeAndNumber) {
+  using Kind = PairVerdict::Kind;
+  DisplacementField field = numbered_grid();
+  for (PairVerdict const verdict : {PairVerdict{Kind::uncorrelated}, PairVerdict{Kind::periodic, 8.25}}) {
+    field.verdict = verdict;
+    EXPECT_EQ(read_vectors(write("v.h5", field)).field.verdict, verdict);
+  }
+  field.verdict = {};
+  EXPECT_EQ(Hdf5Reader(write("v.h5", field)).attribute("verdict_code"), "");
+  EXPECT_EQ(read_vectors(write("v.h5", field)).field.verdict, PairVerdict{});
+}
+
 TEST_F(VectorWriters, ScatteredHdf5HasNoGrid) {
   Hdf5Reader const file(write("v.h5", scattered_pair()));
   EXPECT_FALSE(file.has("/grid/u_px"));

@@ -24,6 +24,7 @@ TEST(Error, HasAKeyIfASetupCausesIt) {
 
 TEST(Error, HasTheCodeOfItsKind) {
   EXPECT_EQ(OutputError("a.tif", "is full").code(), ErrorCode::output);
+  EXPECT_EQ(OutputError(ErrorCode::overwrites_input, "a.tif", "is an input").code(), ErrorCode::overwrites_input);
   EXPECT_EQ(DeviceMemoryError("is full").code(), ErrorCode::device);
   EXPECT_EQ(Interrupted().code(), ErrorCode::interrupted);
   EXPECT_EQ(SetupError({{"a.toml:1:1", "is unknown", "a", ErrorCode::unknown_key}}).code(), ErrorCode::unknown_key);

@@ -17,6 +17,8 @@
 #include "studies/benchmark/particle_pair.h"
 #include "tests/cuda/memory_limits.h"
 #include "tests/scene/small_scenes.h"
+#include "tests/support/contains_whole.h"
+#include "tests/support/numbers_in.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -56,10 +58,11 @@ FieldSetup volume() {
   return field;
 }
 
+/// Returns the message about the memory that a work lacks; "no error" if it succeeds.
 std::string error_of(std::function<void()> const& work) {
   try {
     work();
-  } catch (DeviceError const& error) {
+  } catch (DeviceMemoryError const& error) {
     return error.what();
   }
   return "no error";
@@ -139,7 +142,7 @@ TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
     char size[32];
     std::snprintf(size, sizeof size, "%.3f", static_cast<double>(plan.table.bytes()) / 0x1p20);
     EXPECT_THAT(error_of([&] { render(scene); }),
-                HasSubstr(std::string("out of device memory: the deflection table needs ") + size + " MiB, "));
+                ::testing::AllOf(HasSubstr("deflection table"), ContainsWhole(std::string(size) + " MiB")));
     EXPECT_LT(limit.most_held(), plan.table.bytes());
   }
   EXPECT_EQ(render(scene).truth.size(), 64u);
@@ -193,17 +196,21 @@ TEST_F(SmallDevice, RefusesAVolumeThatIsLargerThanItBeforeAnyAllocation) {
   PlannedScene before = scene_of(sinusoid(0.1, 6e-3), 3, 64), large = scene_of(volume(), 3, 64);
   {
     DeviceMemoryLimit const limit(mebibyte);
-    EXPECT_THAT(
-        error_of([&] { make_renderer()->render(large, large.plan, large.dots, RenderImages::yes, RenderTheory::no); }),
-        ::testing::MatchesRegex("out of device memory: the field's refractivity needs 1\\.[0-9]+ MiB, "
-                                "1\\.000 of 1\\.000 MiB are free; .*"));
+    std::string const error =
+        error_of([&] { make_renderer()->render(large, large.plan, large.dots, RenderImages::yes, RenderTheory::no); });
+    EXPECT_THAT(error, HasSubstr("refractivity"));
+    std::vector<double> const needed_free_total = numbers_in(error);
+    ASSERT_EQ(needed_free_total.size(), 3u) << error;
+    EXPECT_TRUE(needed_free_total[0] >= 1.0 && needed_free_total[0] < 2.0) << error;
+    EXPECT_EQ(needed_free_total[1], 1.0) << error;
+    EXPECT_EQ(needed_free_total[2], 1.0) << error;
     EXPECT_EQ(limit.most_held(), 0u);
   }
   // results after the error equal those before it
   Rendering const expected = render(before);
   {
     DeviceMemoryLimit const limit(0);
-    EXPECT_THAT(error_of([&] { render(large); }), HasSubstr("the field's refractivity needs"));
+    EXPECT_THAT(error_of([&] { render(large); }), HasSubstr("refractivity"));
   }
   expect_same(expected, render(before));
 }
@@ -241,7 +248,7 @@ TEST_F(SmallDevice, RefusesACorrelationThatDoesNotFitAndThenGoesOn) {
     auto const correlator = [&] {
       DeviceMemoryLimit const limit(most * part / 16);
       auto made = cuda::make_correlator({});
-      EXPECT_THAT(error_of([&] { field_of(*made); }), HasSubstr("out of device memory: correlation needs "));
+      EXPECT_THAT(error_of([&] { field_of(*made); }), HasSubstr("correlation"));
       return made;
     }();
     expect_same(expected, field_of(*correlator));

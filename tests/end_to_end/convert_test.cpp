@@ -36,7 +36,7 @@ TEST_F(Convert, VectorsOfACaseAreWrittenInEveryFormat) {
     EXPECT_EQ(again["ray_truth"], scores["ray_truth"]) << name;
   }
   Hdf5Reader const original(path("case/vectors.h5")), copy(path("v.h5"));
-  for (char const* const attribute : {"setup", "reference_sha256", "flow_sha256", "verdict", "device"})
+  for (char const* const attribute : {"setup", "reference_sha256", "flow_sha256", "verdict_code", "device"})
     EXPECT_EQ(copy.attribute(attribute), original.attribute(attribute)) << attribute;
 }
 
@@ -133,7 +133,7 @@ TEST_F(Convert, ForeignVectorsAreReadByTheirConventions) {
 TEST_F(Convert, OtherOutputsAreRefused) {
   write("v.csv", "x,y,u,v\n1,2,3,4\n");
   expect_error({"convert", "v.csv", "-o", "v.xyz"}, 2, "output at v.xyz", {".vtp"});
-  expect_error({"convert", "v.csv", "-o", "v.csv"}, 2, "output at v.csv");
+  expect_error({"convert", "v.csv", "-o", "v.csv"}, 2, "overwrites_input at v.csv");
   expect_error({"convert", "absent.csv", "-o", "v.vtp"}, 2, "missing_file at absent.csv");
   expect_error({"convert", "v.csv", "-o", "v.nc", "--image-rows", "0"}, 2, "arguments at --image-rows");
 }

@@ -88,7 +88,8 @@ TEST_F(DocumentedFiles, OfACaseHoldWhatTheirTablesName) {
   EXPECT_EQ(text.substr(0, text.find('\n')), columns);
   Hdf5Reader const vectors(in("case/vectors.h5").string());
   for (char const* hash : {"reference_sha256", "flow_sha256"}) EXPECT_EQ(vectors.attribute(hash), summary[hash]);
-  for (char const* attribute : {"grid_columns", "grid_rows", "verdict", "uncertainty_method", "uncertainty_key"})
+  for (char const* attribute : {"grid_columns", "grid_rows", "verdict", "verdict_code", "verdict_number",
+                                "uncertainty_method", "uncertainty_key"})
     EXPECT_NE(vectors.attribute(attribute), "");
 
   succeed({"compare", "case", "--no-figures"});

@@ -133,7 +133,7 @@ TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
   // Sums and thirds of correlation planes in float have rounding errors of 1e-7 of the peak. The Gaussian fit divides
   // them by the curvature of the peak, 0.1 to 1 per square pixel, in every pass: 1e-5 px at most, with a factor of ten.
   for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);
-  EXPECT_EQ(three.attribute("verdict"), one.attribute("verdict"));
+  EXPECT_EQ(three.attribute("verdict_code"), one.attribute("verdict_code"));
 }
 
 // A pair of identical images biases the mean towards 0, which no verdict detects.

@@ -43,7 +43,7 @@ TEST_F(InfoParticles, TellsWhatToExpect) {
   EXPECT_GT(json["depth_of_field_mm"], 0);
   std::string const text = succeed({"info", "particles", "piv.toml"});
   EXPECT_THAT(text, HasSubstr("image diameter"));
-  EXPECT_THAT(text, HasSubstr("in 32 px"));
+  EXPECT_THAT(text, ContainsWhole("in 32 px"));
 }
 
 TEST_F(InfoParticles, IsOfPivAlone) {

@@ -250,7 +250,7 @@ TEST_F(Inputs, PixelsThatAreNoNumbersAreCountedAndLeftOut) {
   write_pages("b.tif", {frame(2)});
   auto const holes = json_of({"correlate", "holed.tif", "b.tif", "-o", "v.csv", "--set", "correlate.window_px=[32]"});
   EXPECT_THAT(warnings_in(holes), testing::Contains("excluded at holed.tif"));
-  EXPECT_THAT(holes["warnings"].dump(), HasSubstr("23 of 9216"));
+  EXPECT_THAT(holes["warnings"].dump(), ContainsWhole("23 of 9216"));
   expect_error({"correlate", "empty.tif", "b.tif", "-o", "w.csv"}, 2, "invalid_value at empty.tif", {"9216"});
 
   auto const told = json_of({"info", "image", "holed.tif"});

@@ -174,23 +174,25 @@ TEST_F(Places, AnOutputIsNeverAnInput) {
   std::string const around = "../" + folder_.filename().string() + "/rays.csv";
   for (std::string const& output : std::vector<std::string>{"rays.csv", "link.csv", "hard.csv", around}) {
     expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", output}, 2,
-                 "output at " + fs::path(output).filename().string());
+                 "overwrites_input at " + fs::path(output).filename().string());
   }
-  expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", "setup.toml"}, 2, "output at setup.toml");
-  expect_error({"render", "setup.toml", "-o", "."}, 2, "output at setup.toml");
+  expect_error({"trace", "setup.toml", "--rays", "rays.csv", "-o", "setup.toml"}, 2, "overwrites_input at setup.toml");
+  expect_error({"render", "setup.toml", "-o", "."}, 2, "overwrites_input at setup.toml");
   render("case");
-  expect_error({"render", "case/setup.toml", "-o", "case"}, 2, "output at setup.toml");
+  expect_error({"render", "case/setup.toml", "-o", "case"}, 2, "overwrites_input at setup.toml");
   fs::create_symlink("case/truth.h5", in("v.h5"));
-  expect_error({"correlate", "case", "-o", "v.h5"}, 2, "output at v.h5");
+  expect_error({"correlate", "case", "-o", "v.h5"}, 2, "overwrites_input at v.h5");
   fs::copy(in("case/reference.tif"), in("picture.csv"));
-  expect_error({"correlate", "picture.csv", "case/flow.tif", "-o", "picture.csv"}, 2, "output at picture.csv");
+  expect_error({"correlate", "picture.csv", "case/flow.tif", "-o", "picture.csv"}, 2,
+               "overwrites_input at picture.csv");
   succeed({"correlate", "case"});
   fs::create_symlink("vectors.h5", in("case/errors.json"));
-  expect_error({"compare", "case"}, 2, "output at errors.json");
+  expect_error({"compare", "case"}, 2, "overwrites_input at errors.json");
   fs::create_directory(in("run"));
   write("run/study.toml", "base = \"../setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
   fs::create_directory(in("run/cases"));
-  expect_error({"sweep", "plan", "run/study.toml", "-o", "run", "--device", "cpu"}, 2, "output at study.toml");
+  expect_error({"sweep", "plan", "run/study.toml", "-o", "run", "--device", "cpu"}, 2,
+               "overwrites_input at study.toml");
 }
 
 // A field in the place of one of the case's own files: it would be read, and then overwritten.
@@ -200,7 +202,7 @@ TEST_F(Places, AFileThatTheSetupNamesIsNoOutput) {
   render("case", {}, "points.toml");
   fs::rename(in("dots.csv"), in("case/vectors.csv"));
   fs::create_symlink("case/vectors.csv", in("dots.csv"));
-  expect_error({"render", "points.toml", "-o", "case"}, 2, "output at vectors.csv");
+  expect_error({"render", "points.toml", "-o", "case"}, 2, "overwrites_input at vectors.csv");
 }
 
 TEST_F(Places, AHangUpCleansUpUnlessItIsIgnored) {

@@ -280,7 +280,8 @@ TEST_F(ReconstructedDensity, RefusesWhatDeterminesNoDensity) {
                "missing_file at setup.toml", {"--budget"});
   expect_error({"reconstruct", "case", "--reference", "left", "-o", "density.txt"}, 2, "output at density.txt",
                {".h5"});
-  expect_error({"reconstruct", "case", "--reference", "left", "-o", "case/truth.h5"}, 2, "output at truth.h5");
+  expect_error({"reconstruct", "case", "--reference", "left", "-o", "case/truth.h5"}, 2,
+               "overwrites_input at truth.h5");
 
   write_foreign("none.csv", false);
   refused({"--reference", "left", "--vectors", "none.csv"}, 1, "no_valid_vector at none.csv");

@@ -138,7 +138,7 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
   json = json_of({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "spaced.toml"});
   EXPECT_THAT(warnings_in(json), IsEmpty());
   EXPECT_THAT(succeed({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "setup.toml"}),
-              AllOf(HasSubstr("0.002 x 0.002"), HasSubstr("metres"), HasSubstr("kg m-3")));
+              AllOf(ContainsWhole("0.002 x 0.002"), HasSubstr("metres"), HasSubstr("kg m-3")));
 }
 
 // A MATLAB array of meshgrid, [nz, nx, ny], and a header without a spacing.
@@ -154,7 +154,7 @@ TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
   EXPECT_EQ(json["nodes"], (std::vector<int>{16, 20, 24}));
   EXPECT_EQ(json_of({"info", "field", folder + "v_dir_neg.vti"})["axes"]["turned_round"], "xy");
   EXPECT_THAT(json_of({"info", "field", folder + "n_nan_spacing.nrrd"})["units"]["unknown"].get<std::string>(),
-              AllOf(HasSubstr("axis 3"), HasSubstr("16 nodes"), HasSubstr(" z")));
+              AllOf(ContainsWhole("axis 3"), ContainsWhole("16 nodes"), HasSubstr(" z")));
   EXPECT_THAT(json_of({"info", "field", folder + "h_stretch.h5"})["notes"][0].get<std::string>(), HasSubstr(": y"));
   EXPECT_THAT(succeed({"info", "field", folder + "h_descx.h5"}),
               HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x descends"));
@@ -179,7 +179,7 @@ TEST_F(SilentMistakes, InfoReportsSpacingsThatTheFileDoesNotState) {
   json = json_of({"info", "field", "bare.h5"});
   EXPECT_TRUE(json["spacing"][0].is_null());
   EXPECT_EQ(json["extent_mm"][0], 1.0);
-  EXPECT_THAT(json["units"]["assumed"].get<std::string>(), HasSubstr("1 mm"));
+  EXPECT_THAT(json["units"]["assumed"].get<std::string>(), ContainsWhole("1 mm"));
   EXPECT_THAT(succeed({"info", "field", "bare.h5"}),
               ContainsRegex("spacing along x +unknown  .not stated in the file."));
 }

@@ -96,7 +96,7 @@ TEST_F(SilentPhysics, WarnsOfParticlesThatSendNoPhoton) {
   EXPECT_THAT(warnings_of({"laser.pulse_energy_mj=1e-6"}), Contains("exposure at particles"));
   auto const tiny = summary_of(piv_setup, {"particles.diameter_um=1e-7"});
   EXPECT_THAT(warnings_in(tiny), Contains("exposure at particles"));
-  EXPECT_THAT(tiny["warnings"].dump(), AllOf(HasSubstr("1e-07 m "), HasSubstr("0.1 um")));
+  EXPECT_THAT(tiny["warnings"].dump(), AllOf(ContainsWhole("1e-07 m "), ContainsWhole("0.1 um")));
 }
 
 // The view is 96 * 10 um / 0.1628 = 5.9 mm wide, and the light of the sheet ends at 1.5 times its thickness. A rotation
@@ -130,7 +130,7 @@ TEST_F(SilentPhysics, AsksForTheUnitOfImplausibleNumbers) {
   std::vector<std::string> const rendering{"render", "setup.toml", "-o", "case"};
   auto const short_wave = json_with(rendering, "medium.wavelength_nm=0.532");
   EXPECT_EQ(short_wave["exit_code"], 2);
-  EXPECT_THAT(short_wave["warnings"].dump(), AllOf(HasSubstr("0.532 um"), HasSubstr("532 nm")));
+  EXPECT_THAT(short_wave["warnings"].dump(), AllOf(ContainsWhole("0.532 um"), ContainsWhole("532 nm")));
   write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,0,0,0,1\n");
   auto const is_implausible = Contains(testing::StartsWith("implausible at "));
   for (std::vector<std::string> const& command :

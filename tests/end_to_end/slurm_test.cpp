@@ -86,7 +86,7 @@ TEST_F(SlurmCommand, NamesTheTasksThatLeftCasesUndone) {
            "echo 'slurmstepd: error: CANCELLED DUE TO TIME LIMIT' > \"${last%/job.sh}/17_2.log\"; exit 1\n");
   Outcome const outcome = sweep_run({});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("1 missing"));
+  EXPECT_THAT(outcome.out, ContainsWhole("1 missing"));
   EXPECT_THAT(outcome.out, HasSubstr("task 17_2 (cases 2)"));
   EXPECT_THAT(outcome.out, HasSubstr("CANCELLED DUE TO TIME LIMIT"));
 }

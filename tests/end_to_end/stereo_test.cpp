@@ -302,7 +302,7 @@ TEST_F(Stereo, RefusesWhatItCannotCombine) {
     expect_error(arguments, 2, error, values);
   };
   refused({"case/left", "case/right", "-o", "uvw.txt"}, "output at uvw.txt", {".h5"});
-  refused({"case/left", "case/right", "-o", "case/left/vectors.h5"}, "output at vectors.h5");
+  refused({"case/left", "case/right", "-o", "case/left/vectors.h5"}, "overwrites_input at vectors.h5");
   refused({"case/left", "case/left", "-o", "uvw.h5"}, "undetermined at left");
   refused({"case/left", "case/right", "--calibration", "b.h5", "a.h5", "-o", "uvw.h5"}, "inconsistent at b.h5",
           {"case/left"});

@@ -117,7 +117,7 @@ TEST_F(Target, RefusesWhatHasNoDots) {
 TEST_F(Target, NeverReplacesAnInput) {
   succeed({"target", "setup.toml", "-o", "dots.csv"});
   write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
-  expect_error({"target", "points.toml", "-o", "dots.csv"}, 2, "output at dots.csv");
+  expect_error({"target", "points.toml", "-o", "dots.csv"}, 2, "overwrites_input at dots.csv");
 }
 
 }  // namespace

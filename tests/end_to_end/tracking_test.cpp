@@ -55,7 +55,7 @@ class TrackedDots : public ProgramFixture {
     for (std::string const output : {"grid", "scattered"}) {
       std::string const file = output + ".h5";
       auto const tracked = track(output, file);
-      EXPECT_EQ(tracked["verdict"], "correlates") << output;
+      EXPECT_EQ(tracked["verdict_code"], "correlates") << output;
       double const vectors = tracked["vectors"], valid = tracked["valid"];
       EXPECT_GT(valid, least_valid * vectors) << output;
       EXPECT_EQ(tracked["replaced"], 0) << output;

@@ -66,7 +66,7 @@ TEST(FieldUnits, OfValuesAreConvertedOrReported) {
   EXPECT_THAT(factor("g/cm^3").warning, IsEmpty());
   EXPECT_THAT(factor("1").warning, IsEmpty());
   EXPECT_EQ(factor("K").factor, 1);
-  EXPECT_EQ(factor("K").warning, "values are in \"K\", which is not a known unit of density, and are taken as kg/m^3");
+  EXPECT_THAT(factor("K").warning, HasSubstr("\"K\""));
 }
 
 }  // namespace

@@ -35,9 +35,11 @@ TEST_F(InputGuards, WhatWasReadIsRefusedAsOutputUnderEveryName) {
   InputGuard const guard;
   std::thread([&] { read_text_file(in_folder("input.txt")); }).join();  // reading in any thread counts
   for (std::string const name : {"input.txt", "link.txt", "hard.txt"}) {
-    EXPECT_THAT([&] { OutputFile::write_text(in_folder(name), "new"); }, ThrowsOutputError(name)) << name;
+    EXPECT_THAT([&] { OutputFile::write_text(in_folder(name), "new"); },
+                ThrowsOutputError(name, ErrorCode::overwrites_input))
+        << name;
   }
-  EXPECT_THAT([&] { OutputFile(in_folder("link.txt")); }, ThrowsOutputError("link.txt"));
+  EXPECT_THAT([&] { OutputFile(in_folder("link.txt")); }, ThrowsOutputError("link.txt", ErrorCode::overwrites_input));
   EXPECT_EQ(content(in_folder("input.txt")), "precious");
   OutputFile::write_text(in_folder("other.txt"), "new");
 }
@@ -47,7 +49,7 @@ TEST_F(InputGuards, InputReadLaterIsProtectedAtCommit) {
   OutputFile output(in_folder("input.txt"));
   read_text_file(in_folder("input.txt"));
   output.write("new", 3);
-  EXPECT_THAT([&] { output.commit(); }, ThrowsOutputError("input.txt"));
+  EXPECT_THAT([&] { output.commit(); }, ThrowsOutputError("input.txt", ErrorCode::overwrites_input));
   EXPECT_EQ(content(in_folder("input.txt")), "precious");
 }
 
@@ -59,7 +61,7 @@ TEST_F(InputGuards, AFolderThatReplacesAnInputStaysAsItWas) {
   read_text_file(in_folder("case/derived.csv"));
   OutputFolder output(in_folder("case"), {"marker", {"derived.csv"}});
   OutputFile::write_text(output.temporary_path() + "/marker", "new");
-  EXPECT_THAT([&] { output.commit(); }, ThrowsOutputError("derived.csv"));
+  EXPECT_THAT([&] { output.commit(); }, ThrowsOutputError("derived.csv", ErrorCode::overwrites_input));
   EXPECT_EQ(content(in_folder("case/marker")), "old");
   EXPECT_EQ(content(in_folder("case/derived.csv")), "precious");
 }

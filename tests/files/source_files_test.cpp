@@ -133,7 +133,8 @@ TEST_F(SourceFilesTest, AnOutputIsNoInputUnderAnyName) {
   fs::create_hard_link(in_folder("rays.csv"), in_folder("hard.csv"));
   fs::create_directory_symlink(".", in_folder("again"));
   for (std::string const name : {"rays.csv", "link.csv", "hard.csv", "again/rays.csv", "./again/again/rays.csv"}) {
-    EXPECT_THAT([&] { refuse_inputs_as_outputs({in_folder(name)}, {in_folder("rays.csv")}); }, ThrowsOutputError(name))
+    EXPECT_THAT([&] { refuse_inputs_as_outputs({in_folder(name)}, {in_folder("rays.csv")}); },
+                ThrowsOutputError(name, ErrorCode::overwrites_input))
         << name;
   }
   refuse_inputs_as_outputs({in_folder("new.csv"), in_folder("again/new.csv")},

@@ -59,8 +59,10 @@ auto ThrowsDataError(ErrorCode code, std::string place, Message const& message) 
 }
 
 /// Matches a function that throws an OutputError. @param path end of the output file's path
-inline auto ThrowsOutputError(std::string path) {
-  return testing::Throws<OutputError>(testing::Property("place", &Error::place, testing::EndsWith(std::move(path))));
+inline auto ThrowsOutputError(std::string path, ErrorCode code = ErrorCode::output) {
+  return testing::Throws<OutputError>(
+      testing::AllOf(testing::Property("code", &Error::code, code),
+                     testing::Property("place", &Error::place, testing::EndsWith(std::move(path)))));
 }
 
 /// Matches a function that throws a SetupError with a problem of this code at this place.

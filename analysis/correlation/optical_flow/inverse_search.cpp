@@ -4,7 +4,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "analysis/correlation/optical_flow/dense_flow.h"
-#include "render/base/error.h"
+#include "analysis/preparation/opencv_call.h"
 
 namespace gladstone::inline correlation {
 namespace {
@@ -39,14 +39,11 @@ cv::Mat eight_bits(GreyImage const& frame, GreyRange const& range) {
 /// Returns the displacement from the first frame to the second one, at the pixel midway between both positions.
 DenseFlow one_way(cv::Mat const& from, cv::Mat const& to) {
   cv::Mat found;
-  try {
-    OneThread const one_thread;
-    cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM)->calc(from, to, found);
-  } catch (cv::Exception const& error) {
-    throw DataError(ErrorCode::unsupported, "image pair",
-                    fmt::format("OpenCV cannot compute the optical flow of frames of {} x {} px ({})", from.cols,
-                                from.rows, error.err));
-  }
+  call_opencv(ErrorCode::unsupported,
+              fmt::format("compute the optical flow of frames of {} x {} px", from.cols, from.rows), [&] {
+                OneThread const one_thread;
+                cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM)->calc(from, to, found);
+              });
   DenseFlow d(from.cols, from.rows);
   for (int j = 0; j < d.rows; ++j)
     for (int i = 0; i < d.columns; ++i) {

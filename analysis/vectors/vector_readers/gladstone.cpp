@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 #include "analysis/vectors/vector_readers/own_columns.h"
 #include "analysis/vectors/vector_readers/vector_readers.h"
@@ -91,7 +92,8 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
     if (is_own_column(name)) columns.values[name] = file.read('/' + name);
   }
   VectorFile vectors = read_own_columns(columns);
-  vectors.field.verdict = file.attribute("verdict");
+  vectors.field.verdict = {find_verdict_kind(file.attribute("verdict_code")),
+                           std::strtod(file.attribute("verdict_number").c_str(), nullptr)};
   vectors.field.uncertainty_method = file.attribute("uncertainty_method");
   vectors.field.uncertainty_key = file.attribute("uncertainty_key");
   return vectors;

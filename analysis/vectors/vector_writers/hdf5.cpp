@@ -60,7 +60,11 @@ void write_vector_columns(std::string const& path, DisplacementField const& fiel
   }
   if (field.columns > 0) write_grid(file, path, field, columns, scaled);
   file.attach_scales(scaled);
-  if (!field.verdict.empty()) file.attribute("/", "verdict", field.verdict);
+  if (field.verdict != PairVerdict{}) {
+    file.attribute("/", "verdict", verdict_text(field.verdict));
+    file.attribute("/", "verdict_code", std::string(verdict_code(field.verdict.kind)));
+    file.attribute("/", "verdict_number", field.verdict.number);
+  }
   if (!field.uncertainty_method.empty()) {
     file.attribute("/", "uncertainty_method", field.uncertainty_method);
     file.attribute("/", "uncertainty_key", field.uncertainty_key);

@@ -11,6 +11,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "tests/end_to_end/support/program.h"
+#include "tests/support/contains_whole.h"
 #include "tests/support/folder_fixture.h"
 
 namespace gladstone::end_to_end {
@@ -114,7 +115,7 @@ class ProgramFixture : public FolderFixture {
 
   /// Expects the command to fail with this exit code and an error of this code and place, and to change no file.
   /// @param error  "syntax at v.csv:3": code, and name of the file without its folders, with line and column if known
-  /// @param values  names and numbers that the message contains; its wording is free
+  /// @param values  names and whole numbers that the message contains; its wording is free
   void expect_error(std::vector<std::string> arguments, int exit_code, std::string const& error,
                     std::vector<std::string> const& values = {}) const {
     auto const before = everything();
@@ -132,7 +133,7 @@ class ProgramFixture : public FolderFixture {
     auto const at = std::find(errors.begin(), errors.end(), error) - errors.begin();
     if (at == std::ssize(errors)) return;
     std::string const message = nlohmann::json::parse(outcome.out)["errors"][static_cast<std::size_t>(at)]["message"];
-    for (std::string const& value : values) EXPECT_THAT(message, testing::HasSubstr(value)) << error;
+    for (std::string const& value : values) EXPECT_THAT(message, ContainsWhole(value)) << error;
   }
   /// Returns the errors in the output of a command with --json, each as "code at place".
   static std::vector<std::string> errors_in(std::string const& output) {
@@ -157,7 +158,7 @@ class ProgramFixture : public FolderFixture {
     return found;
   }
   /// Expects an object of --json or a summary.json to contain a warning of this code and place.
-  /// @param values  names and numbers that its text contains; its wording is free
+  /// @param values  names and whole numbers that its text contains; its wording is free
   static void expect_warning_in(nlohmann::json const& json, std::string const& warning,
                                 std::vector<std::string> const& values = {}) {
     auto const warnings = warnings_in(json);
@@ -165,7 +166,7 @@ class ProgramFixture : public FolderFixture {
     auto const at = std::find(warnings.begin(), warnings.end(), warning) - warnings.begin();
     if (at == std::ssize(warnings)) return;
     std::string const text = json.at("warning_records")[static_cast<std::size_t>(at)].at("text");
-    for (std::string const& value : values) EXPECT_THAT(text, testing::HasSubstr(value)) << warning;
+    for (std::string const& value : values) EXPECT_THAT(text, ContainsWhole(value)) << warning;
   }
   /// Expects the rendering of this setup text to fail with an error of this code and place.
   void expect_setup_error(std::string const& text, std::string const& error,
