@@ -152,7 +152,21 @@ SetupNode const* SetupDocument::find(std::vector<std::string> const& path) const
   return node;
 }
 
+void SetupDocument::remove(std::vector<std::string> const& path) {
+  auto* const table = const_cast<SetupNode*>(find({path.begin(), path.end() - 1}));
+  if (!table) return;
+  auto& members = table->kind == SetupNode::Kind::array && table->elements.size() == 1 ? table->elements.front().members
+                                                                                       : table->members;
+  std::erase_if(members, [&path](SetupMember const& member) { return member.key == path.back(); });
+}
+
 SetupTable SetupDocument::root() { return SetupTable(state_.get(), {}); }
+
+SetupTable SetupDocument::reread(std::string const& key) {
+  state_->record.entry(key).tables.clear();
+  std::erase_if(state_->files, [&key](SetupFileName const& file) { return file.path.front() == key; });
+  return root().table(key);
+}
 
 void SetupDocument::add_problem(SetupProblem problem) { state_->problems.push_back(std::move(problem)); }
 

@@ -38,9 +38,13 @@ class SetupDocument {
   void set(std::vector<std::string> const& path, SetupNode const& value);
   /// Returns the value at a path of keys; null if there is none.
   SetupNode const* find(std::vector<std::string> const& path) const;
+  /// Removes the value at a path of keys, if there is one.
+  void remove(std::vector<std::string> const& path);
 
   /// Returns the root table. Tables are views: the document must outlive them.
   SetupTable root();
+  /// Returns a table of the root as if it had not been read, so that its changed values can be read.
+  SetupTable reread(std::string const& key);
 
   void add_problem(SetupProblem problem);
   void add_problem(std::string where, std::string message) { add_problem({std::move(where), std::move(message)}); }
