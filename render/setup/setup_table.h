@@ -64,6 +64,10 @@ class SetupDocument {
   /// Returns the setup as written, as one TOML document without defaults; file names that were read are absolute.
   std::string written() const;
 
+  /// Returns the document that parsing written() gives, except that messages still refer to the original file: the keys
+  /// are sorted, none of them has been read, and no problems are known.
+  SetupDocument unread() const;
+
   /// Returns the absolute names of the files read by required_path() and path_list().
   std::vector<std::string> file_names() const;
   /// Returns the keys of file_names() as paths from the root; "[2]" for an element of an array.

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "render/base/error.h"
-#include "render/setup/toml_text.h"
+#include "render/setup/setup_node.h"
 #include "studies/case/uncertain_inputs.h"
 #include "studies/design/sheet.h"
 
@@ -81,14 +81,6 @@ std::vector<double> values_of(FreeChoice const& free, DesignVariant const& varia
     std::erase_if(values, [&](double value) { return value < variant.setup.lens.f_number * (1 - 1e-6); });
   }
   return values;
-}
-
-void leave_out(SetupDocument& document, std::string const& table, std::string const& key) {
-  SetupNode const* const node = document.find({table});
-  if (!node || !node->find(key)) return;
-  SetupNode rest = *node;
-  std::erase_if(rest.members, [&key](SetupMember const& member) { return member.key == key; });
-  document.set({table}, rest);
 }
 
 std::string parts_name(std::string const& camera, std::string const& lens) {
@@ -183,13 +175,13 @@ std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> c
   return name.empty() ? "the setup" : name;
 }
 
-std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question,
-                          DesignPoint<double> const& bench) {
+SetupDocument applied_setup(DesignVariant const& variant, DesignQuestion const& question,
+                            DesignPoint<double> const& bench) {
   SetupDocument document = variant.document.copy();
   std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
                                                bench.dot_diameter};
   // remove the other key of the dot diameter
-  if (chooses_dots(question)) leave_out(document, "target", "dot_diameter_px");
+  if (chooses_dots(question)) document.remove({"target", "dot_diameter_px"});
   for (FreeChoice const& free : question.free) {
     if (free.choice == Choice::focal_length && !variant.lens.empty()) continue;
     ChoiceKey const& key = choice_key(free.choice);
@@ -198,14 +190,12 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
     document.set({path.substr(0, dot), path.substr(dot + 1)},
                  setup_number(value[static_cast<std::size_t>(free.choice)] / key.unit));
   }
-  // Load the setup again: verifies that it can be rendered, and makes its file names absolute.
+  // Load the setup: verifies that it can be rendered, and makes its file names absolute.
   std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
-  CaseSetup const loaded = load_case_setup(std::move(document));
-  SetupNode root = parse_toml(insert_uncertain_inputs(loaded.document.written(), uncertain), "setup");
-  std::erase_if(root.members, [](SetupMember const& member) {
-    return std::find(question_tables.begin(), question_tables.end(), member.key) != question_tables.end();
-  });
-  return toml_document(root);
+  SetupDocument applied = std::move(load_case_setup(std::move(document)).document);
+  insert_uncertain_inputs(applied, uncertain);
+  for (char const* const table : question_tables) applied.remove({table});
+  return applied.unread();
 }
 
 }  // namespace gladstone::inline design

@@ -43,7 +43,7 @@ std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> c
 
 /// Returns the setup of a design, ready to render: the variant's setup with the design's values, without the tables
 /// that request the design.
-std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question,
-                          DesignPoint<double> const& bench);
+SetupDocument applied_setup(DesignVariant const& variant, DesignQuestion const& question,
+                            DesignPoint<double> const& bench);
 
 }  // namespace gladstone::inline design

@@ -90,7 +90,7 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
     report.text += "rows of the design sheet that the recommended set-up does not meet with a margin\n" + missed;
   if (applied && report.feasible) {
     DesignVariant const& variant = result.variants[result.chosen().branch.variant];
-    std::string const text = applied_setup(variant, result.question, *report.best);
+    std::string const text = applied_setup(variant, result.question, *report.best).written();
     applied->write(text.data(), text.size());
     applied->commit();
   }

@@ -537,6 +537,20 @@ TEST(SetupDocument, ARemovedKeyIsUnknownToTheReader) {
   EXPECT_EQ(setup.root().table("target").number("size", 1), 1);
 }
 
+TEST(SetupDocument, UnreadIsTheParsedText) {
+  auto setup = document("[target]\nsize = 2\nfile = \"a.csv\"\n[lens]\nf = 1\n");
+  setup.root().table("target").required_path("file");
+  setup.set({"lens", "apertures"}, setup_array({setup_number(1.0), setup_integer(2)}));
+  setup.set({"camera", "bits"}, setup_integer(8));
+  auto unread = setup.unread(), parsed = SetupDocument::from_text(setup.written(), "case.toml");
+  EXPECT_EQ(unread.written(), parsed.written());
+  EXPECT_NE(unread.written(), setup.written());  // which has the keys in the order in which they were set
+  EXPECT_TRUE(unread.file_names().empty());
+  EXPECT_EQ(unread.root().table("target").required_path("file"), "/data/cases/a.csv");
+  for (char const* const table : {"lens", "camera"}) unread.root().mark_as_read(table);
+  EXPECT_THAT(problems(unread), ElementsAre("unknown_key at case.toml:2:1"));
+}
+
 // Reading a changed table again gives the record that reading the changed setup once gives.
 TEST(SetupDocument, ATableIsReadAgainAsIfForTheFirstTime) {
   auto const read = [](SetupTable target) {
