@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <optional>
 
 #include "render/base/error.h"
 #include "render/setup/setup_node.h"
@@ -60,9 +61,13 @@ SetupDocument with_small_dots(SetupDocument document) {
   return document;
 }
 
-DesignVariant load_variant(SetupDocument document, DesignQuestion const& question, std::string const& camera,
+/// Loads a setup, with small dots if their diameter is a design variable.
+CaseSetup load_with_small_dots(SetupDocument const& document, DesignQuestion const& question) {
+  return load_case_setup(chooses_dots(question) ? with_small_dots(document.copy()) : document.copy());
+}
+
+DesignVariant make_variant(SetupDocument document, CaseSetup const& loaded, std::string const& camera,
                            std::string const& lens) {
-  CaseSetup const loaded = load_case_setup(chooses_dots(question) ? with_small_dots(document.copy()) : document.copy());
   if (auto const [key, reason] = beyond_design(loaded.setup); !key.empty()) {
     auto const dot = key.find('.');
     SetupTable table = dot == std::string::npos ? document.root() : document.root().table(key.substr(0, dot));
@@ -94,12 +99,15 @@ std::string parts_name(std::string const& camera, std::string const& lens) {
 }  // namespace
 
 std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question,
-                                           std::vector<SkippedVariant>& skipped) {
+                                           std::vector<SkippedVariant>& skipped, CaseSetup const* loaded) {
   std::vector<DesignVariant> variants;
   std::exception_ptr first;
   auto const add = [&](SetupDocument const& with_both, std::string const& camera, std::string const& lens) {
     try {
-      variants.push_back(load_variant(with_both.copy(), question, camera, lens));
+      bool const known = loaded && camera.empty() && lens.empty() && !chooses_dots(question);
+      std::optional<CaseSetup> own;
+      if (!known) own = load_with_small_dots(with_both, question);
+      variants.push_back(make_variant(with_both.copy(), known ? *loaded : *own, camera, lens));
     } catch (SetupError const& error) {
       if (camera.empty() && lens.empty()) throw;  // the setup itself is invalid
       if (!first) first = std::current_exception();

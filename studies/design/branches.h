@@ -28,10 +28,11 @@ struct SkippedVariant {
 /// Combines every camera of the inventory with the setup's lens and with every prescription.
 /// @param document  a valid setup
 /// @param skipped   receives the incompatible combinations
+/// @param loaded    the same setup, loaded; null: it is loaded if needed
 /// @throws SetupError if no combination is compatible, if the setup's camera and lens are not, or if the closed forms
 ///   do not apply
 std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question,
-                                           std::vector<SkippedVariant>& skipped);
+                                           std::vector<SkippedVariant>& skipped, CaseSetup const* loaded = nullptr);
 
 /// Returns all combinations of the variants and the discrete values of the design variables. The variants must outlive
 /// them.
