@@ -64,6 +64,7 @@ class SetupRenderer {
   /// @param shared  exposure, images, particles and medium that earlier pairs of the same sequence determined
   RenderedSetup render(Renderer& renderer, std::string const& folder, SharedParts const& shared = {});
 
+  std::vector<CameraCase> const& cameras() const { return cameras_; }
   /// Setup of the first camera.
   Setup const& first_setup() const { return cameras_.front().loaded.setup; }
   /// Returns the names of the cameras, which are their folders; empty for the only camera.
