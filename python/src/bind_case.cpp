@@ -16,19 +16,18 @@ using AnyCase = std::variant<std::shared_ptr<PairCase>, std::shared_ptr<PlanesCa
 
 /// Renders every camera of a setup. Cameras that see the same field share it.
 std::vector<AnyCase> render_cameras(SetupText const& setup, std::string const& device_name) {
-  std::vector<CameraCase> cameras = camera_cases(setup.document());
+  std::vector<CameraCase> cameras = load_cameras(setup.document());
   Backend const device = open_device(device_name);
   std::vector<AnyCase> rendered;
   std::shared_ptr<PairCase> first;
   for (CameraCase& one : cameras) {
-    SetupNode const* const experiment = one.document.find({"experiment"});
-    if (experiment && experiment->text == "calibration") {
-      rendered.emplace_back(std::make_shared<PlanesCase>(one.name, std::move(one.document), device));
+    if (!one.loaded.setup.planes.empty()) {
+      rendered.emplace_back(std::make_shared<PlanesCase>(std::move(one), device));
       continue;
     }
     ReusableParts known;
     if (first) known.medium = &first->prepared().scene.medium;
-    auto const pair = std::make_shared<PairCase>(one.name, std::move(one.document), device, known);
+    auto const pair = std::make_shared<PairCase>(std::move(one), device, known);
     if (!first) first = pair;
     rendered.emplace_back(pair);
   }

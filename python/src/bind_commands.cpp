@@ -37,10 +37,9 @@ struct CameraPreview {
 std::vector<CameraPreview> render_previews(SetupText const& setup, std::string const& device_name) {
   Backend const device = open_device(device_name);
   std::vector<CameraPreview> previews;
-  for (CameraCase& camera : camera_cases(setup.document())) {
-    CaseSetup const loaded = load_case_setup(std::move(camera.document));
+  for (auto const& [camera, loaded] : load_cameras(setup.document())) {
     log_warnings(loaded.warnings);
-    previews.push_back({camera.name, render_preview(loaded, *device.renderer)});
+    previews.push_back({camera, render_preview(loaded, *device.renderer)});
   }
   return previews;
 }

@@ -26,8 +26,8 @@ void write_folder(std::string const& folder, CaseSetup const& loaded, Write cons
 
 }  // namespace
 
-PairCase::PairCase(std::string camera, SetupDocument document, Backend const& device, ReusableParts const& known)
-    : camera_(std::move(camera)), loaded_(load_case_setup(std::move(document))) {
+PairCase::PairCase(CameraCase camera, Backend const& device, ReusableParts const& known)
+    : camera_(std::move(camera.name)), loaded_(std::move(camera.loaded)) {
   RecordedCase finished = render_case_in_memory(loaded_, *device.renderer, known);
   outcome_ = judge_case(loaded_, finished.prepared, finished.rendered, finished.frames, *device.renderer);
   store_images(outcome_.levels);
@@ -87,8 +87,8 @@ RenderedCase const& PairCase::rendered(Backend const& device) {
   return *rendered_;
 }
 
-PlanesCase::PlanesCase(std::string name, SetupDocument document, Backend const& device)
-    : camera(std::move(name)), loaded(load_case_setup(std::move(document))) {
+PlanesCase::PlanesCase(CameraCase one, Backend const& device)
+    : camera(std::move(one.name)), loaded(std::move(one.loaded)) {
   hash_inputs(loaded);
   rendered = render_planes(loaded, *device.renderer);
   for (std::size_t plane = 0; plane < rendered.planes.size(); ++plane) {

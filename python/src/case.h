@@ -9,6 +9,7 @@
 #include "python/src/setup_text.h"
 #include "studies/case/backend.h"
 #include "studies/case/calibration_case.h"
+#include "studies/case/cameras.h"
 #include "studies/case/case.h"
 #include "studies/case/write_case.h"
 
@@ -18,7 +19,7 @@ namespace gladstone::python {
 class PairCase {
  public:
   /// Renders the case of one camera.
-  PairCase(std::string camera, SetupDocument document, Backend const& device, ReusableParts const& known);
+  PairCase(CameraCase camera, Backend const& device, ReusableParts const& known);
   /// Loads a CASE folder.
   explicit PairCase(std::string folder);
 
@@ -67,7 +68,7 @@ struct PlanesCase {
   RenderedCalibration rendered;
   std::vector<std::uint16_t> images;  ///< grey levels [planes, rows, columns]
 
-  PlanesCase(std::string name, SetupDocument document, Backend const& device);
+  PlanesCase(CameraCase one, Backend const& device);
   void save(std::string const& folder);
 };
 

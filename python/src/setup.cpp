@@ -9,7 +9,6 @@
 #include "render/base/parallel.h"
 #include "render/files/text_file.h"
 #include "render/scene/setup_document.h"
-#include "render/setup/setup_node.h"
 #include "studies/case/backend.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
@@ -38,9 +37,7 @@ bool may_wait(ErrorCode code) {
 /// @throws SetupError with all problems
 SetupText checked(SetupText setup) {
   try {
-    run([&] {
-      for (CameraCase& camera : camera_cases(setup.document())) check_setup_keys(std::move(camera.document));
-    });
+    run([&] { check_camera_keys(setup.document()); });
   } catch (SetupError const& error) {
     auto const waits = [](SetupProblem const& problem) { return may_wait(problem.code); };
     if (!std::all_of(error.problems().begin(), error.problems().end(), waits)) throw;
@@ -57,9 +54,8 @@ SetupText read_setup_file(std::string const& path) {
 /// @throws SetupError with all problems
 std::vector<std::pair<std::string, std::string>> resolve(SetupText const& setup) {
   std::vector<std::pair<std::string, std::string>> resolved;
-  for (CameraCase& camera : camera_cases(setup.document())) {
-    CaseSetup const loaded = load_case_setup(std::move(camera.document));
-    resolved.emplace_back(camera.name, loaded.document.resolved());
+  for (auto const& [camera, loaded] : load_cameras(setup.document())) {
+    resolved.emplace_back(camera, loaded.document.resolved());
   }
   return resolved;
 }
@@ -68,22 +64,10 @@ std::vector<std::pair<std::string, std::string>> resolve(SetupText const& setup)
 std::string written(SetupText const& setup) {
   SetupDocument document = setup.document();
   try {
-    std::vector<CameraCase> cameras = camera_cases(document);
-    SetupNode const* const tables = document.find({"camera"});
-    std::vector<std::vector<std::string>> keys;
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
-      bool const own_lens = cameras.size() > 1 && tables->elements[i].find("lens");
-      CaseSetup const loaded = load_case_setup(std::move(cameras[i].document));
-      for (std::vector<std::string> key : loaded.document.file_keys()) {
-        if (own_lens && key.front() == "lens") key.insert(key.begin(), {"camera", '[' + std::to_string(i) + ']'});
-        keys.push_back(std::move(key));
-      }
-    }
-    document.name_files(keys);
+    return written_setup(document.copy(), load_cameras(document));
   } catch (SetupError const&) {
     return document.written();
   }
-  return document.written();
 }
 
 }  // namespace

@@ -119,8 +119,17 @@ std::string byte_sha256(std::string const& path) {
 }
 
 void SourceFiles::add(std::string name, std::string path, Holds holds) {
-  std::string hash = compute_hash(path, holds);
+  auto const known = std::find_if(sources_.begin(), sources_.end(),
+                                  [&](Source const& source) { return source.path == path && source.holds == holds; });
+  std::string hash = known == sources_.end() ? compute_hash(path, holds) : known->sha256;
   add(std::move(name), std::move(path), holds, std::move(hash));
+}
+
+Image<double> SourceFiles::add_image(std::string name, std::string path) {
+  ImageMetadata metadata;
+  Image<double> image = read_image(path, &metadata);
+  add(std::move(name), std::move(path), Holds::pixels, pixel_sha256(image, metadata.sample_bits));
+  return image;
 }
 
 void SourceFiles::add(std::string name, std::string path) {

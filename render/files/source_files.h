@@ -35,13 +35,15 @@ class SourceFiles {
  public:
   enum class Holds { pixels, datasets, bytes };
 
-  /// Adds a file that is about to be read, and hashes it. @throws DataError
+  /// Adds a file that is about to be read, and hashes it unless its hash is known. @throws DataError
   void add(std::string name, std::string path, Holds holds);
   /// Adds a file that is about to be read, and hashes the datasets of an HDF5 file or the bytes of any other.
   /// @throws DataError
   void add(std::string name, std::string path);
   /// Adds a file that was hashed when it was read.
   void add(std::string name, std::string path, Holds holds, std::string sha256);
+  /// Reads an image, adds it with the hash of its pixels, and returns it. @throws DataError
+  Image<double> add_image(std::string name, std::string path);
   /// Adds an input that check() skips, since it is written together with the result or cannot change.
   void add_known(std::string name, std::string sha256);
   /// Sets the remedy in the message about a changed file: "run gladstone correlate CASE again".

@@ -31,6 +31,22 @@ void set_place(SetupNode& node, SetupPlace const& place) {
   for (auto& member : node.members) set_place(member.value, place);
 }
 
+/// Sorts the keys of all tables, as the TOML parser does.
+void sort_keys(SetupNode& node) {
+  std::stable_sort(node.members.begin(), node.members.end(),
+                   [](SetupMember const& a, SetupMember const& b) { return a.key < b.key; });
+  for (auto& element : node.elements) sort_keys(element);
+  for (auto& member : node.members) sort_keys(member.value);
+}
+
+/// Returns the setup as written, with absolute file names.
+SetupNode absolute_root(SetupDocument::State const& state) {
+  SetupDocument::State absolute;
+  absolute.root = state.root;
+  for (auto const& [path, name] : state.files) absolute.find(path)->text = name;
+  return std::move(absolute.root);
+}
+
 std::vector<std::string> split_path(std::string const& text) {
   std::vector<std::string> steps{""};
   for (char const c : text) {
@@ -152,7 +168,21 @@ SetupNode const* SetupDocument::find(std::vector<std::string> const& path) const
   return node;
 }
 
+void SetupDocument::remove(std::vector<std::string> const& path) {
+  auto* const table = const_cast<SetupNode*>(find({path.begin(), path.end() - 1}));
+  if (!table) return;
+  auto& members = table->kind == SetupNode::Kind::array && table->elements.size() == 1 ? table->elements.front().members
+                                                                                       : table->members;
+  std::erase_if(members, [&path](SetupMember const& member) { return member.key == path.back(); });
+}
+
 SetupTable SetupDocument::root() { return SetupTable(state_.get(), {}); }
+
+SetupTable SetupDocument::reread(std::string const& key) {
+  state_->record.entry(key).tables.clear();
+  std::erase_if(state_->files, [&key](SetupFileName const& file) { return file.path.front() == key; });
+  return root().table(key);
+}
 
 void SetupDocument::add_problem(SetupProblem problem) { state_->problems.push_back(std::move(problem)); }
 
@@ -180,11 +210,18 @@ std::string SetupDocument::resolved() const { return resolved_toml(state_->recor
 
 std::string SetupDocument::written() const {
   auto const is_absolute = [this](SetupFileName const& file) { return state_->find(file.path)->text == file.absolute; };
-  if (std::all_of(state_->files.begin(), state_->files.end(), is_absolute)) return toml_document(state_->root);
-  State absolute;
-  absolute.root = state_->root;
-  for (auto const& [path, name] : state_->files) absolute.find(path)->text = name;
-  return toml_document(absolute.root);
+  bool const absolute = std::all_of(state_->files.begin(), state_->files.end(), is_absolute);
+  return toml_document(absolute ? state_->root : absolute_root(*state_));
+}
+
+SetupDocument SetupDocument::unread() const {
+  auto state = std::make_unique<State>();
+  state->name = state_->name;
+  state->folder = state_->folder;
+  state->root = absolute_root(*state_);
+  sort_keys(state->root);
+  state->record.present = true;
+  return SetupDocument(std::move(state));
 }
 
 std::vector<std::string> SetupDocument::file_names() const {

@@ -38,9 +38,13 @@ class SetupDocument {
   void set(std::vector<std::string> const& path, SetupNode const& value);
   /// Returns the value at a path of keys; null if there is none.
   SetupNode const* find(std::vector<std::string> const& path) const;
+  /// Removes the value at a path of keys, if there is one.
+  void remove(std::vector<std::string> const& path);
 
   /// Returns the root table. Tables are views: the document must outlive them.
   SetupTable root();
+  /// Returns a table of the root as if it had not been read, so that its changed values can be read.
+  SetupTable reread(std::string const& key);
 
   void add_problem(SetupProblem problem);
   void add_problem(std::string where, std::string message) { add_problem({std::move(where), std::move(message)}); }
@@ -59,6 +63,10 @@ class SetupDocument {
 
   /// Returns the setup as written, as one TOML document without defaults; file names that were read are absolute.
   std::string written() const;
+
+  /// Returns the document that parsing written() gives, except that messages still refer to the original file: the keys
+  /// are sorted, none of them has been read, and no problems are known.
+  SetupDocument unread() const;
 
   /// Returns the absolute names of the files read by required_path() and path_list().
   std::vector<std::string> file_names() const;

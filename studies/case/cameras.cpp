@@ -117,13 +117,59 @@ void give_own_noise(SetupDocument& document, std::size_t index) {
 
 /// Removes the camera distances of [geometry], which apply only to cameras without a pose.
 void leave_place_to_others(SetupDocument& document) {
-  SetupNode const* const found = document.find({"geometry"});
-  if (!found || found->kind != Kind::table) return;
-  SetupNode geometry = *found;
-  take(geometry, "z_a_mm");
-  take(geometry, "z_front_mm");
-  take(geometry, "z_sensor_mm");
-  document.set({"geometry"}, geometry);
+  for (char const* const key : {"z_a_mm", "z_front_mm", "z_sensor_mm"}) document.remove({"geometry", key});
+}
+
+/// Splits a setup into one setup per camera. A setup with one camera is returned unchanged, without a name.
+std::vector<std::pair<std::string, SetupDocument>> split_cameras(SetupDocument const& setup) {
+  std::vector<std::pair<std::string, SetupDocument>> split;
+  SetupNode const* const cameras = several_cameras(setup);
+  if (!cameras) {
+    split.emplace_back("", setup.copy());
+    return split;
+  }
+  std::vector<SetupNode> const& all = cameras->elements;
+  std::vector<std::string> const names = camera_names(setup);
+  auto const has = [&all](char const* table) {
+    return std::count_if(all.begin(), all.end(), [&](SetupNode const& camera) { return camera.find(table); });
+  };
+  auto const count = static_cast<std::ptrdiff_t>(all.size()), posed = has("pose");
+  bool const lens_unused = has("lens") == count && setup.find({"lens"});
+  std::set<std::string> others;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    SetupDocument document = setup.copy();
+    if (lens_unused) {
+      document.root().problem("lens", "is not used (each camera has its own lens); remove it");
+    }
+    keep_camera(document, all[i], names);
+    check_name(document.root().table("camera"), names[i], others);
+    give_own_noise(document, i);
+    if (posed < count && all[i].find("pose")) leave_place_to_others(document);
+    split.emplace_back(names[i], std::move(document));
+  }
+  return split;
+}
+
+/// Calls a function with the name and the setup of each camera.
+/// @throws SetupError with the problems of all cameras
+template <class Function>
+void for_each_camera(SetupDocument const& setup, Function const& call) {
+  std::vector<SetupProblem> problems;
+  std::size_t more = 0;
+  for (auto& [name, document] : split_cameras(setup)) {
+    try {
+      call(name, std::move(document));
+    } catch (SetupError const& error) {
+      for (SetupProblem const& problem : error.problems()) {
+        bool const told = std::any_of(problems.begin(), problems.end(), [&problem](SetupProblem const& other) {
+          return other.where == problem.where && other.message == problem.message;
+        });
+        if (!told) problems.push_back(problem);
+      }
+      more = std::max(more, error.more());
+    }
+  }
+  if (!problems.empty()) throw SetupError(problems, more);
 }
 
 }  // namespace
@@ -158,51 +204,39 @@ SetupDocument with_own_lens(SetupDocument setup) {
   return setup;
 }
 
-std::vector<CameraCase> camera_cases(SetupDocument const& setup) {
-  std::vector<CameraCase> cases;
-  SetupNode const* const cameras = several_cameras(setup);
-  if (!cameras) {
-    cases.push_back({"", setup.copy()});
-    return cases;
-  }
-  std::vector<SetupNode> const& all = cameras->elements;
-  std::vector<std::string> const names = camera_names(setup);
-  auto const has = [&all](char const* table) {
-    return std::count_if(all.begin(), all.end(), [&](SetupNode const& camera) { return camera.find(table); });
-  };
-  auto const count = static_cast<std::ptrdiff_t>(all.size()), posed = has("pose");
-  bool const lens_unused = has("lens") == count && setup.find({"lens"});
-  std::set<std::string> others;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    SetupDocument document = setup.copy();
-    if (lens_unused) {
-      document.root().problem("lens", "is not used (each camera has its own lens); remove it");
-    }
-    keep_camera(document, all[i], names);
-    check_name(document.root().table("camera"), names[i], others);
-    give_own_noise(document, i);
-    if (posed < count && all[i].find("pose")) leave_place_to_others(document);
-    cases.push_back({names[i], std::move(document)});
-  }
-  std::vector<Setup> read;
-  std::vector<SetupProblem> problems;
-  std::size_t more = 0;
-  for (CameraCase const& one : cases) {
-    try {
-      read.push_back(load_case_setup(one.document.copy()).setup);
-    } catch (SetupError const& error) {
-      for (SetupProblem const& problem : error.problems()) {
-        bool const told = std::any_of(problems.begin(), problems.end(), [&problem](SetupProblem const& other) {
-          return other.where == problem.where && other.message == problem.message;
-        });
-        if (!told) problems.push_back(problem);
-      }
-      more = std::max(more, error.more());
+std::vector<CameraCase> load_cameras(SetupDocument const& setup) {
+  std::vector<CameraCase> cameras;
+  for_each_camera(setup, [&cameras](std::string const& name, SetupDocument document) {
+    cameras.push_back({name, load_case_setup(std::move(document))});
+  });
+  if (cameras.size() < 2) return cameras;
+  case_kind(cameras.front().loaded.setup).share_sources(cameras);
+  for (CameraCase& one : cameras) check_case_setup(one.loaded);
+  return cameras;
+}
+
+void check_camera_keys(SetupDocument const& setup) {
+  for_each_camera(setup,
+                  [](std::string const& /*name*/, SetupDocument document) { check_setup_keys(std::move(document)); });
+}
+
+std::string written_setup(SetupDocument document, std::vector<CameraCase> const& cameras) {
+  SetupNode const* const all = document.find({"camera"});
+  std::vector<std::vector<std::string>> keys;
+  if (SetupNode const* const files = document.find({"sequence", "files"})) {
+    for (std::size_t i = 0; i < files->elements.size(); ++i) {
+      keys.push_back({"sequence", "files", '[' + std::to_string(i) + ']'});
     }
   }
-  if (!problems.empty()) throw SetupError(problems, more);
-  case_kind(read.front()).share_sources(cases, read);
-  return cases;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    bool const own_lens = cameras.size() > 1 && all->elements[i].find("lens") != nullptr;
+    for (std::vector<std::string> key : cameras[i].loaded.document.file_keys()) {
+      if (own_lens && key.front() == "lens") key.insert(key.begin(), {"camera", '[' + std::to_string(i) + ']'});
+      keys.push_back(std::move(key));
+    }
+  }
+  document.name_files(keys);
+  return document.written();
 }
 
 }  // namespace gladstone::inline cases

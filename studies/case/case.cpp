@@ -127,28 +127,20 @@ void refuse_study(SetupDocument& document) {
                      "axes", ErrorCode::unknown_key}});
 }
 
-/// A setup whose tables have been read, but not compared with each other. Its document contains the problems.
-struct ReadTables {
-  CaseSetup loaded;
-  std::optional<PaperLight> light;
-  bool first_pair_only;
-};
-
-ReadTables read_tables(SetupDocument document) {
+/// Reads the tables of a setup without comparing them with each other. Its document contains the problems.
+CaseSetup read_tables(SetupDocument document) {
   refuse_study(document);
   std::vector<UncertainInput> uncertain = extract_uncertain_inputs(document);
   bool const first_pair_only = describes_sequence(document);
   select_pair(document);
-  ReadTables read{.loaded = {.document = with_own_lens(std::move(document)),
-                             .setup = {},
-                             .correlate = {},
-                             .warnings = {},
-                             .uncertain = std::move(uncertain)},
-                  .light = {},
-                  .first_pair_only = first_pair_only};
-  CaseSetup& loaded = read.loaded;
+  CaseSetup loaded{.document = with_own_lens(std::move(document)),
+                   .setup = {},
+                   .correlate = {},
+                   .warnings = {},
+                   .uncertain = std::move(uncertain),
+                   .first_pair_only = first_pair_only};
   SetupTable root = loaded.document.root();
-  read.light = read_light(root);
+  loaded.light = read_light(root);
   loaded.setup = read_setup(root);
   if (loaded.setup.experiment().correlated) {
     loaded.correlate = read_correlation_settings(root.table("correlate"));
@@ -162,7 +154,7 @@ ReadTables read_tables(SetupDocument document) {
     loaded.document.add_problem(
         name, "contains bytes that are not valid UTF-8, which setups require; rename the file or the folder");
   }
-  return read;
+  return loaded;
 }
 
 /// Adds unusual values to the warnings of a setup; logs them if it has problems, which a wrong unit may cause.
@@ -182,11 +174,16 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
-  auto [loaded, light, first_pair_only] = read_tables(std::move(document));
+  CaseSetup loaded = read_tables(std::move(document));
+  check_case_setup(loaded, field);
+  return loaded;
+}
+
+void check_case_setup(CaseSetup& loaded, FieldMemory field) {
   SetupTable root = loaded.document.root();
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
-    if (first_pair_only) {
+    if (loaded.first_pair_only) {
       loaded.warnings.push_back(
           {WarningCode::ignored, "sequence",
            fmt::format("only its first pair, pair = {}, is considered; gladstone render renders all pairs",
@@ -195,17 +192,16 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     case_kind(loaded.setup).cross_check(loaded);
     cross_check_method(loaded);
   }
-  if (light && !loaded.document.has_problems()) {
-    loaded.setup.camera.exposure_e = exposure_from_light(*light, loaded.setup);
+  if (loaded.light && !loaded.document.has_problems()) {
+    loaded.setup.camera.exposure_e = exposure_from_light(*loaded.light, loaded.setup);
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
   add_unusual_values(loaded);
   loaded.document.finish();
-  return std::move(loaded);
 }
 
 void check_setup_keys(SetupDocument document) {
-  CaseSetup loaded = read_tables(std::move(document)).loaded;
+  CaseSetup loaded = read_tables(std::move(document));
   add_unusual_values(loaded);
   loaded.document.finish();
 }

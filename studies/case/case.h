@@ -14,6 +14,7 @@
 #include "render/scene/setup.h"
 #include "render/setup/setup_table.h"
 #include "studies/case/case_files.h"
+#include "studies/case/light_exposure.h"
 #include "studies/case/uncertain_inputs.h"
 
 namespace gladstone::inline cases {
@@ -21,7 +22,7 @@ namespace gladstone::inline cases {
 /// Tables that request a design, which a setup may contain. Rendering and correlation ignore them.
 inline constexpr std::array design_tables{"requirements", "limits", "inventory", "free", "correlations"};
 
-/// A setup file read and cross-checked completely.
+/// A setup that was read.
 struct CaseSetup {
   SetupDocument document;
   Setup setup;
@@ -30,9 +31,13 @@ struct CaseSetup {
   std::vector<UncertainInput> uncertain = {};  ///< numbers given with an uncertainty, unless the caller extracted them
   /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
+  std::optional<PaperLight> light = {};  ///< table [light], from which check_case_setup() computes the exposure
+  bool first_pair_only = false;          ///< true: the setup describes a sequence, of which this is the first pair
 
   /// Returns a copy, for functions that change the setup.
-  CaseSetup copy() const { return {document.copy(), setup, correlate, warnings, uncertain, input_hashes}; }
+  CaseSetup copy() const {
+    return {document.copy(), setup, correlate, warnings, uncertain, input_hashes, light, first_pair_only};
+  }
 };
 
 /// Reads and checks a setup.
@@ -40,6 +45,11 @@ struct CaseSetup {
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
 /// @param field  whether the check of available memory includes a medium that is yet to be built
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemory::needed);
+
+/// Compares the keys of a setup with each other and with the files that they name. Determines its warnings, and the
+/// exposure by its light. load_case_setup() includes it; it is required again only after a change of the setup.
+/// @throws SetupError with all problems
+void check_case_setup(CaseSetup& loaded, FieldMemory field = FieldMemory::needed);
 
 /// Checks names, types and ranges of the keys of a setup with one camera, without comparing them with each other or
 /// opening the files that they name.

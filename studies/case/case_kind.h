@@ -32,9 +32,7 @@ struct CaseKind {
   /// @param largest  largest number that may be chosen
   double (*expected_rays)(Setup const& setup, double largest);
   /// Replaces the sources in the setups of all cameras by common ones.
-  /// @param cases  setups to be changed
-  /// @param read   contents of these setups
-  void (*share_sources)(std::vector<CameraCase>& cases, std::vector<Setup> const& read);
+  void (*share_sources)(std::vector<CameraCase>& cameras);
   /// Renders the case of one camera.
   /// @param shared   exposure, images and particles that earlier pairs of the sequence determined
   /// @param entry    receives the numbers for the report, except the folder

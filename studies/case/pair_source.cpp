@@ -17,10 +17,9 @@ namespace {
 
 /// Reads a setup completely. @throws DataError if it has several cameras
 Setup read_one_camera(SetupDocument const& document, std::string const& name) {
-  std::vector<CameraCase> cameras = camera_cases(document);
-  if (cameras.size() != 1)
+  if (!camera_names(document).empty())
     throw DataError(ErrorCode::unsupported, name, "has several cameras; a batch needs a setup with one camera");
-  return load_case_setup(std::move(cameras.front().document)).setup;
+  return load_case_setup(document.copy()).setup;
 }
 
 /// Returns true if a value is a number or an array of numbers.

@@ -155,10 +155,11 @@ class SequenceRendering {
     });
   }
 
-  /// Reads frame A of a pair from the files of an earlier pair.
+  /// Reads frame A of a pair from the files of an earlier pair. All pairs of BOS have the same one.
   void read_earlier_frames(std::size_t number) {
     UnrecordedReading const of_own_files;
     for (std::string const& camera : cameras_) {
+      if (!sequence_.consecutive && !shared_.cameras[camera].reference.empty()) continue;
       fs::path const earlier = sequence_.consecutive ? case_of(number - 1, camera) / case_file::flow
                                                      : frames_of(camera) / rendered_sequence_file::frame(0);
       shared_.cameras[camera].reference = read_image(earlier.string());
@@ -237,10 +238,24 @@ class SequenceRendering {
   std::vector<Json> pairs_;
 };
 
+/// Returns the setup of a sequence with the number of its first pair in [sequence], as the setups of the other pairs
+/// have theirs. A setup that describes no sequence is returned unchanged; its readers report the problem.
+SetupDocument with_first_pair(SetupDocument document) {
+  SetupNode const* const sequence = document.find({"sequence"});
+  if (!sequence || sequence->kind != SetupNode::Kind::table || sequence->find("pair")) return document;
+  SetupNode const* const experiment = document.find({"experiment"});
+  bool const consecutive = experiment && experiment->text == piv_experiment.name;
+  if (!consecutive && !sequence->find("files")) return document;
+  SetupNode first = setup_integer(consecutive ? 0 : 1);
+  first.place = sequence->place;
+  document.set({"sequence", "pair"}, first);
+  return document;
+}
+
 }  // namespace
 
 SequenceRenderer::SequenceRenderer(SetupDocument document, std::string path)
-    : path_(std::move(path)), document_(std::move(document)), first_(document_.copy(), path_) {
+    : path_(std::move(path)), document_(std::move(document)), first_(with_first_pair(document_.copy()), path_) {
   std::optional<SequenceSetup> const sequence = first_.first_setup().sequence;
   if (!sequence)
     throw SetupError(
@@ -301,7 +316,7 @@ void SequenceRenderer::refuse_over_inputs(std::string const& folder) const {
 
 RenderedSequence SequenceRenderer::render(Renderer& renderer, std::string const& folder, bool show_progress) {
   auto const start = std::chrono::steady_clock::now();
-  prepare_sequence_folder(folder, first_.written());
+  prepare_sequence_folder(folder, written_setup(document_.copy(), first_.cameras()));
   SequenceRendering run(folder, *first_.first_setup().sequence, first_.camera_names());
   RenderedSequence result;
   try {
@@ -309,7 +324,8 @@ RenderedSequence SequenceRenderer::render(Renderer& renderer, std::string const&
     for (std::size_t k = 0; k < pair_count_; ++k) {
       throw_if_interrupted();
       std::size_t const number = first_pair_ + k;
-      SetupRenderer setup = pair_setup(number);
+      std::optional<SetupRenderer> later;
+      SetupRenderer& setup = k == 0 ? first_ : later.emplace(pair_setup(number));
       if (run.retain(number, k == 0, setup)) {
         ++result.resumed;
       } else {

@@ -43,14 +43,14 @@ class SequenceRenderer {
   RenderedSequence render(Renderer& renderer, std::string const& folder, bool show_progress);
 
  private:
-  /// Returns the setup of a pair.
+  /// Returns the setup of a pair after the first.
   SetupRenderer pair_setup(std::size_t number) const;
   /// Checks that the density files of a BOS sequence can be read and have one size. @throws SetupError
   void check_fields(std::vector<std::string> const& files) const;
 
   std::string path_;
   SetupDocument document_;
-  SetupRenderer first_;  ///< first pair
+  SetupRenderer first_;  ///< first pair, whose number is part of its setup
   std::size_t first_pair_ = 0, pair_count_ = 0;
 };
 

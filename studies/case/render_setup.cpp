@@ -8,7 +8,6 @@
 
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
-#include "render/setup/setup_node.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/json_text.h"
 #include "studies/case/sequence_pair.h"
@@ -23,13 +22,11 @@ namespace fs = std::filesystem;
 SetupRenderer::SetupRenderer(SetupDocument document, std::string path)
     : path_(std::move(path)), document_(std::move(document)) {
   if (!describes_sequence(document_)) select_pair(document_);
-  for (CameraCase& one : camera_cases(document_)) {
-    cameras_.push_back({one.name, load_case_setup(std::move(one.document))});
-  }
+  cameras_ = load_cameras(document_);
 }
 
 void SetupRenderer::refuse_over_inputs(std::string const& folder) const {
-  for (OneCamera const& camera : cameras_) {
+  for (CameraCase const& camera : cameras_) {
     std::vector<std::string> inputs = camera.loaded.document.file_names();
     inputs.push_back(path_);
     refuse_case_over_inputs(folder, inputs);
@@ -42,7 +39,7 @@ RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folde
   RenderedSetup all;
   BuiltMedium& medium = all.medium;
   if (shared.medium) medium = *shared.medium;
-  for (OneCamera& camera : cameras_) {
+  for (CameraCase& camera : cameras_) {
     bool const first = &camera == &cameras_.front();
     if (!camera.name.empty()) spdlog::info("camera {}", camera.name);
     ReusableParts known;
@@ -69,7 +66,7 @@ RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folde
   return all;
 }
 
-nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
+nlohmann::ordered_json SetupRenderer::render_one(CameraCase& camera, Renderer& renderer, ReusableParts const& known,
                                                  BuiltMedium& medium, OutputFolder const& output, RenderedCamera& entry,
                                                  SharedParts::OfCamera const& shared) const {
   CaseWriter const write = case_kind(camera.loaded.setup).render(camera.loaded, renderer, known, shared, entry, medium);
@@ -84,13 +81,13 @@ nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& re
 
 std::vector<std::string> SetupRenderer::camera_names() const {
   std::vector<std::string> names;
-  for (OneCamera const& camera : cameras_) names.push_back(camera.name);
+  for (CameraCase const& camera : cameras_) names.push_back(camera.name);
   return names;
 }
 
 std::vector<std::string> SetupRenderer::rendered_inputs() const {
   std::vector<std::string> inputs;
-  for (OneCamera const& camera : cameras_) {
+  for (CameraCase const& camera : cameras_) {
     std::vector<std::string> const files = camera.loaded.document.file_names();
     std::vector<std::vector<std::string>> const keys = camera.loaded.document.file_keys();
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -100,24 +97,6 @@ std::vector<std::string> SetupRenderer::rendered_inputs() const {
   return inputs;
 }
 
-std::string SetupRenderer::written() const {
-  SetupDocument document = document_.copy();
-  SetupNode const* const all = document.find({"camera"});
-  std::vector<std::vector<std::string>> keys;
-  if (SetupNode const* const files = document.find({"sequence", "files"})) {
-    for (std::size_t i = 0; i < files->elements.size(); ++i) {
-      keys.push_back({"sequence", "files", '[' + std::to_string(i) + ']'});
-    }
-  }
-  for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    bool const own_lens = cameras_.size() > 1 && all->elements[i].find("lens") != nullptr;
-    for (std::vector<std::string> key : cameras_[i].loaded.document.file_keys()) {
-      if (own_lens && key.front() == "lens") key.insert(key.begin(), {"camera", '[' + std::to_string(i) + ']'});
-      keys.push_back(std::move(key));
-    }
-  }
-  document.name_files(keys);
-  return document.written();
-}
+std::string SetupRenderer::written() const { return written_setup(document_.copy(), cameras_); }
 
 }  // namespace gladstone::inline cases

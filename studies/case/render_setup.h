@@ -64,6 +64,7 @@ class SetupRenderer {
   /// @param shared  exposure, images, particles and medium that earlier pairs of the same sequence determined
   RenderedSetup render(Renderer& renderer, std::string const& folder, SharedParts const& shared = {});
 
+  std::vector<CameraCase> const& cameras() const { return cameras_; }
   /// Setup of the first camera.
   Setup const& first_setup() const { return cameras_.front().loaded.setup; }
   /// Returns the names of the cameras, which are their folders; empty for the only camera.
@@ -74,19 +75,15 @@ class SetupRenderer {
   std::vector<std::string> rendered_inputs() const;
 
  private:
-  struct OneCamera {
-    std::string name;  ///< name of the camera; empty for the only camera
-    CaseSetup loaded;
-  };
   /// Renders one camera's case into its part of the output folder.
   /// @return the contents of its summary.json
-  nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
+  nlohmann::ordered_json render_one(CameraCase& camera, Renderer& renderer, ReusableParts const& known,
                                     BuiltMedium& medium, OutputFolder const& output, RenderedCamera& entry,
                                     SharedParts::OfCamera const& shared) const;
 
   std::string path_;
   SetupDocument document_;
-  std::vector<OneCamera> cameras_;
+  std::vector<CameraCase> cameras_;
 };
 
 }  // namespace gladstone::inline cases

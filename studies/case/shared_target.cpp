@@ -12,9 +12,10 @@ namespace {
 SetupNode pair(Vec2d numbers) { return setup_array({setup_number(numbers.x), setup_number(numbers.y)}); }
 
 /// Returns width and height of a target centred at `middle` that covers the targets of all cameras [mm].
-Vec2d extent_of_all(std::vector<Setup> const& read, Vec2d middle) {
+Vec2d extent_of_all(std::vector<CameraCase> const& cameras, Vec2d middle) {
   Vec2d half{};
-  for (Setup const& one : read) {
+  for (CameraCase const& camera : cameras) {
+    Setup const& one = camera.loaded.setup;
     Vec2d const off = one.target_centre() - middle, extent = one.target_extent();
     half = {std::max(half.x, std::abs(off.x) + extent.x / 2), std::max(half.y, std::abs(off.y) + extent.y / 2)};
   }
@@ -33,34 +34,37 @@ void share_dots(SetupDocument& document, Setup const& first, Setup const& own, V
 /// Sets another camera's dot diameter in mm to that of the first camera.
 void share_diameter(SetupDocument& document, Setup const& first) {
   if (first.target.dot_diameter_m) return;
-  if (SetupNode const* const table = document.find({"target"}); table && table->find("dot_diameter_px")) {
-    SetupNode without = *table;
-    std::erase_if(without.members, [](SetupMember const& member) { return member.key == "dot_diameter_px"; });
-    document.set({"target"}, without);
-  }
+  document.remove({"target", "dot_diameter_px"});
   document.set({"target", "dot_diameter_mm"}, setup_number(first.dot_diameter() / unit::millimetre));
+}
+
+/// Places the common target of all cameras.
+void share_place(std::vector<CameraCase>& cameras, Setup first) {
+  Vec2d const middle = first.target.centre_m.value_or(Vec2d{});
+  Vec2d const extent_mm =
+      first.target.extent_m ? *first.target.extent_m / unit::millimetre : extent_of_all(cameras, middle);
+  if (!first.target.extent_m) first.target.extent_m = extent_mm * unit::millimetre;
+  for (CameraCase& one : cameras) {
+    SetupDocument& document = one.loaded.document;
+    TargetSetup const& own = one.loaded.setup.target;
+    if (!own.extent_m) document.set({"target", "extent_mm"}, pair(extent_mm));
+    if (!own.centre_m) document.set({"target", "center_mm"}, pair(middle));
+    if (own.kind == TargetKind::dots) share_dots(document, first, one.loaded.setup, *first.target.extent_m);
+  }
 }
 
 }  // namespace
 
-void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read) {
-  Setup first = read.front();
+void share_target(std::vector<CameraCase>& cameras) {
+  Setup const& first = cameras.front().loaded.setup;
   TargetKind const kind = first.target.kind;
   if (kind == TargetKind::lattice) return;  // lattices are defined in metres and so already equal
   if (kind != TargetKind::image) {
-    for (CameraCase& one : cases) share_diameter(one.document, first);
+    for (CameraCase& one : cameras) share_diameter(one.loaded.document, first);
   }
-  if (kind == TargetKind::points) return;  // positions are defined in metres and so already equal
-  Vec2d const middle = first.target.centre_m.value_or(Vec2d{});
-  Vec2d const extent_mm =
-      first.target.extent_m ? *first.target.extent_m / unit::millimetre : extent_of_all(read, middle);
-  if (!first.target.extent_m) first.target.extent_m = extent_mm * unit::millimetre;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    SetupDocument& document = cases[i].document;
-    if (!read[i].target.extent_m) document.set({"target", "extent_mm"}, pair(extent_mm));
-    if (!read[i].target.centre_m) document.set({"target", "center_mm"}, pair(middle));
-    if (kind == TargetKind::dots) share_dots(document, first, read[i], *first.target.extent_m);
-  }
+  // positions of points are defined in metres and so already equal
+  if (kind != TargetKind::points) share_place(cameras, first);
+  for (CameraCase& one : cameras) one.loaded.setup.target = read_target_setup(one.loaded.document.reread("target"));
 }
 
 }  // namespace gladstone::inline cases

@@ -271,17 +271,24 @@ std::vector<UncertainInput> extract_uncertain_inputs(SetupDocument& document) {
   return reader.inputs;
 }
 
-std::string insert_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs) {
-  if (inputs.empty()) return text;
-  SetupNode root = parse_toml(text, "setup");
+void insert_uncertain_inputs(SetupDocument& document, std::vector<UncertainInput> const& inputs) {
+  if (inputs.empty()) return;
+  SetupNode root = *document.find({});
   for (UncertainInput const& input : inputs) {
     SetupNode* const node = node_at(root, input.path);
     if (node && node->is_number() && node->as_double() == input.value) *node = input.node;
   }
-  SetupNode correlations = correlations_node(inputs);
-  std::erase_if(root.members, [](SetupMember const& member) { return member.key == "correlations"; });
-  if (!correlations.elements.empty()) root.members.push_back({"correlations", std::move(correlations)});
-  return toml_document(root);
+  for (SetupMember const& member : root.members) document.set({member.key}, member.value);
+  document.remove({"correlations"});
+  SetupNode const correlations = correlations_node(inputs);
+  if (!correlations.elements.empty()) document.set({"correlations"}, correlations);
+}
+
+std::string insert_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs) {
+  if (inputs.empty()) return text;
+  SetupDocument document = SetupDocument::from_text(text, "setup");
+  insert_uncertain_inputs(document, inputs);
+  return document.written();
 }
 
 }  // namespace gladstone::inline cases

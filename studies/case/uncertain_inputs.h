@@ -40,9 +40,10 @@ struct UncertainInput {
 /// ...) are not searched.
 std::vector<UncertainInput> extract_uncertain_inputs(SetupDocument& document);
 
-/// Writes a setup with the uncertainties at their numbers and their correlations; inverse of
-/// extract_uncertain_inputs().
-/// @param text  TOML, in which each input's key is a number or missing
+/// Inserts the uncertainties at their numbers, and their correlations; inverse of extract_uncertain_inputs().
+/// @param document  setup in which each input's key is a number or missing
+void insert_uncertain_inputs(SetupDocument& document, std::vector<UncertainInput> const& inputs);
+/// @param text  setup as TOML
 std::string insert_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs);
 
 }  // namespace gladstone::inline cases

@@ -88,18 +88,17 @@ Description describe_particles(SetupDocument const& setup, std::string const& na
   std::string text;
   std::vector<ResultRow> all;
   nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
-  for (CameraCase& camera : camera_cases(setup)) {
-    CaseSetup const loaded = load_case_setup(std::move(camera.document));
+  for (auto const& [camera, loaded] : load_cameras(setup)) {
     require_experiment(loaded.setup, piv_experiment, name,
                        "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
     log_warnings(loaded.warnings);
     ExpectedParticles const expected = expected_particles(loaded.setup);
-    text += fmt::format("{}{}\n", name, camera.name.empty() ? "" : ", camera " + camera.name);
+    text += fmt::format("{}{}\n", name, camera.empty() ? "" : ", camera " + camera);
     std::vector<ResultRow> const rows = particle_rows(expected, loaded);
     text += rows_text(rows);
     only = particles_json(rows, expected, loaded);
-    append_rows(all, rows, camera.name);
-    if (!camera.name.empty()) cameras[camera.name] = only;
+    append_rows(all, rows, camera);
+    if (!camera.empty()) cameras[camera] = only;
   }
   nlohmann::ordered_json const json = cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}};
   return {json_text(json), text, std::move(all)};

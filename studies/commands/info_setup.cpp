@@ -50,21 +50,20 @@ Description describe_setup(SetupDocument const& setup, std::string const& name, 
       log_warning(warned.emplace_back(warning));
     }
   };
-  for (CameraCase& camera : camera_cases(setup)) {
-    std::string const path = figure_of_camera(figure, camera.name);
-    CaseSetup const loaded = load_case_setup(std::move(camera.document));
+  for (auto const& [camera, loaded] : load_cameras(setup)) {
+    std::string const path = figure_of_camera(figure, camera);
     warn_once(loaded.warnings);
     warn_once(list_neglected_effects(loaded.setup));
     SetupOverview const overview = make_setup_overview(loaded.copy());
     only = overview_json(overview);
-    text += fmt::format("{}{}: {}\n{}", name, camera.name.empty() ? "" : ", camera " + camera.name, overview.experiment,
+    text += fmt::format("{}{}: {}\n{}", name, camera.empty() ? "" : ", camera " + camera, overview.experiment,
                         overview_text(overview));
     if (!figure.empty() && draw_setup(path, loaded.copy())) {
       only["figure"] = path;
       text += fmt::format("  figure: {}\n", path);
     }
-    append_rows(rows, overview.rows, camera.name);
-    if (!camera.name.empty()) cameras[camera.name] = only;
+    append_rows(rows, overview.rows, camera);
+    if (!camera.empty()) cameras[camera] = only;
   }
   if (figure.empty()) text += fmt::format("to draw the layout: gladstone info setup {} --figure layout.png\n", name);
   nlohmann::ordered_json const json = cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}};

@@ -102,11 +102,10 @@ int render_previews(RenderArguments const& arguments, GlobalOptions const& optio
   auto const renderer = options.open_device().renderer;
   std::string text;
   nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
-  for (CameraCase& camera : camera_cases(document)) {
-    CaseSetup const loaded = load_case_setup(std::move(camera.document));
+  for (auto const& [name, loaded] : load_cameras(document)) {
     log_warnings(loaded.warnings);
     std::filesystem::path path = output;
-    if (!camera.name.empty()) path.replace_filename(output.stem().string() + '_' + camera.name + ".png");
+    if (!name.empty()) path.replace_filename(output.stem().string() + '_' + name + ".png");
     OutputFile file(path.string(), "PNG");
     CasePreview const preview = render_preview(loaded, *renderer);
     std::string const png = encode_png(preview_picture(preview, loaded.setup.camera.bit_depth));
@@ -114,7 +113,7 @@ int render_previews(RenderArguments const& arguments, GlobalOptions const& optio
     file.commit();
     only = preview_json(preview, path.string());
     text += preview_text(preview, loaded.setup.camera, path.string());
-    if (!camera.name.empty()) cameras[camera.name] = only;
+    if (!name.empty()) cameras[name] = only;
   }
   print_result(options, json_text(cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}}), text);
   return ok;

@@ -35,7 +35,7 @@ std::string formatted_target(TargetPattern const& pattern, std::string const& pa
 
 Description write_target(SetupDocument const& setup, std::string const& name, std::string const& output) {
   // All cameras of a setup see the same target.
-  CaseSetup const loaded = load_case_setup(std::move(camera_cases(setup).front().document));
+  CaseSetup const loaded = std::move(load_cameras(setup).front().loaded);
   TargetPattern const pattern = make_target_pattern(loaded.setup, name);
   OutputFile::write_text(output, formatted_target(pattern, output));
   TargetPage const page = make_target_page(pattern);

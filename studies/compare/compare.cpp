@@ -134,7 +134,8 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
   return comparison_kind(prepared.scene.setup).truth(prepared.scene, prepared.plan, renderer, position_px, at);
 }
 
-Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options) {
+Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options,
+                        CaseSetup const* known) {
   ComparedFiles files = compared_files(folder, options.vectors);
   if (!files.unverified.empty()) {
     log_warning(
@@ -142,7 +143,7 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
          fmt::format("contains no SHA-256 of its frames, so that it is unknown whether {} was measured on this case",
                      files.vectors)});
   }
-  CaseSetup loaded = load_case_setup(files.setup, {});
+  CaseSetup loaded = known ? known->copy() : load_case_setup(files.setup, {});
   GroundTruth const dots = read_truth(files.truth);
   MeasuredVectors vectors = load_vectors(files.vectors, loaded, &dots, options);
   stop_point("comparing");

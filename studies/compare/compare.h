@@ -120,6 +120,8 @@ void name_sources(Comparison& comparison, ComparedFiles files);
 
 /// Compares the vectors of a CASE with its truth and theory. Renders again what the comparison needs, unless
 /// options.reuse is set and a stored comparison of the same files exists.
-Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options);
+/// @param known  setup of the CASE; null: it is loaded
+Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options,
+                        CaseSetup const* known = nullptr);
 
 }  // namespace gladstone::inline compare

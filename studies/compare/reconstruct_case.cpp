@@ -105,7 +105,7 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
     comparing.vectors = options.vectors;
     comparing.reuse = true;
     std::optional<Comparison> computed;
-    if (!known.comparison) known.comparison = &computed.emplace(compare_case(place, device, comparing));
+    if (!known.comparison) known.comparison = &computed.emplace(compare_case(place, device, comparing, &loaded));
     result.budget = compute_density_budget(*known.comparison, result, loaded.setup, window_px, options);
   } else if (options.budget) {
     throw DataError(ErrorCode::missing_file, place,

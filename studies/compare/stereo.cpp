@@ -15,7 +15,6 @@
 #include "render/base/nearest_name.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
-#include "render/files/image_file.h"
 #include "render/files/stop_point.h"
 #include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
@@ -105,18 +104,23 @@ void require_equal_sizes(std::array<Image<double>, 2> const& frames, std::string
 }
 
 /// Dewarps the frames of both cases onto the part of the plane that they have in common, and correlates them.
+/// @param known  frames A of both cases, then frames B, if they have been read; else empty
 stereo::Dewarping measure_dewarped(std::array<StereoInput*, 2> const& inputs, StereoOptions const& options,
-                                   stereo::ObjectPlane const& plane, double pixel_size, SourceFiles& sources,
-                                   Backend const& device) {
+                                   std::vector<stereo::SimultaneousImages> known, stereo::ObjectPlane const& plane,
+                                   double pixel_size, SourceFiles& sources, Backend const& device) {
   std::array<std::array<Image<double>, 2>, 2> frames;
   std::array<std::array<int, 2>, 2> size{};
   for (std::size_t i = 0; i < 2; ++i) {
     char const* names[] = {case_file::reference, case_file::flow};
     for (std::size_t k = 0; k < 2; ++k) {
       std::string const file = in_case(options.inputs[i], names[k]);
-      sources.add(fmt::format("{}_{}", k == 0 ? "reference" : "flow", i == 0 ? "a" : "b"), file,
-                  SourceFiles::Holds::pixels);
-      frames[i][k] = read_image(file);
+      std::string const name = fmt::format("{}_{}", k == 0 ? "reference" : "flow", i == 0 ? "a" : "b");
+      if (known.empty()) {
+        frames[i][k] = sources.add_image(name, file);
+      } else {
+        sources.add(name, file, SourceFiles::Holds::pixels);
+        frames[i][k] = std::move(known[k][i]);
+      }
     }
     require_equal_sizes(frames[i], options.inputs[i]);
     std::size_t number = 0;
@@ -201,19 +205,21 @@ StereoMeasurement measure_stereo(StereoOptions options, Backend const& device) {
                                 options.inputs[0], result.view_angle / unit::degree));
   stop_point("reconstructing");
   stereo::ObjectPlane plane = options.plane;
-  std::vector<std::string> const images = find_sheet_images(options);
+  std::vector<stereo::SimultaneousImages> images = read_simultaneous_images(find_sheet_images(options), result.sources);
   std::array<PinholeCamera const*, 2> const cameras{&a.camera.camera, &b.camera.camera};
   if (options.align) {
-    result.alignment = align_sheet_of_files(images, cameras, plane, result.sources);
+    result.alignment = align_sheet_of_images(images, cameras, plane);
     if (result.is_aligned()) plane = result.alignment->fit.plane;
   } else if (!images.empty()) {
-    result.given_sheet = measure_disparity(images, cameras, plane, result.sources);
+    result.given_sheet = measure_disparity(images, cameras, plane);
   }
   result.pixel_size =
       0.5 * (stereo::find_pixel_size(a.camera.camera, plane) + stereo::find_pixel_size(b.camera.camera, plane));
   stereo::StereoSettings settings;
+  if (!options.images.empty()) images.clear();  // which are not the frames of the cases
   if (options.dewarp_images)
-    settings.dewarping = measure_dewarped({&a, &b}, options, plane, result.pixel_size, result.sources, device);
+    settings.dewarping =
+        measure_dewarped({&a, &b}, options, std::move(images), plane, result.pixel_size, result.sources, device);
   settings.spacing = options.spacing;
   settings.window_a_px = a.window_px;
   settings.window_b_px = b.window_px;

@@ -7,7 +7,6 @@
 
 #include "render/base/error.h"
 #include "render/base/units.h"
-#include "render/files/image_file.h"
 
 namespace gladstone::inline compare {
 namespace {
@@ -24,7 +23,8 @@ CorrelationSettings choose_disparity_settings(stereo::SimultaneousImages const& 
   return settings;
 }
 
-/// Reads images of both cameras. @throws DataError if the images of a camera differ in size
+}  // namespace
+
 std::vector<stereo::SimultaneousImages> read_simultaneous_images(std::vector<std::string> const& files,
                                                                  SourceFiles& sources) {
   std::vector<stereo::SimultaneousImages> images;
@@ -32,8 +32,7 @@ std::vector<stereo::SimultaneousImages> read_simultaneous_images(std::vector<std
     stereo::SimultaneousImages both;
     for (std::size_t camera = 0; camera < 2; ++camera) {
       std::string const& file = files[i + camera];
-      sources.add("", file, SourceFiles::Holds::pixels);
-      both[camera] = read_image(file);
+      both[camera] = sources.add_image("", file);
       if (images.empty()) continue;
       Image<double> const& first = images.front()[camera];
       if (first.columns() == both[camera].columns() && first.rows() == both[camera].rows()) continue;
@@ -48,13 +47,11 @@ std::vector<stereo::SimultaneousImages> read_simultaneous_images(std::vector<std
   return images;
 }
 
-}  // namespace
-
-stereo::SheetAlignment align_sheet_of_files(std::vector<std::string> const& images,
-                                            std::array<PinholeCamera const*, 2> const& cameras,
-                                            stereo::ObjectPlane const& plane, SourceFiles& sources) {
-  std::vector<stereo::SimultaneousImages> const read = read_simultaneous_images(images, sources);
-  stereo::SheetAlignment alignment = stereo::align_sheet(cameras, read, plane, choose_disparity_settings(read.front()));
+stereo::SheetAlignment align_sheet_of_images(std::vector<stereo::SimultaneousImages> const& images,
+                                             std::array<PinholeCamera const*, 2> const& cameras,
+                                             stereo::ObjectPlane const& plane) {
+  stereo::SheetAlignment alignment =
+      stereo::align_sheet(cameras, images, plane, choose_disparity_settings(images.front()));
   stereo::ObjectPlane const& found = alignment.fit.plane;
   spdlog::info(
       "laser sheet: Z = {:.4f} mm + {:.5f} X + {:.5f} Y; disparity {:.3f} px with a standard uncertainty of {:.3f} px, "
@@ -64,12 +61,11 @@ stereo::SheetAlignment align_sheet_of_files(std::vector<std::string> const& imag
   return alignment;
 }
 
-std::optional<stereo::SheetAlignment> measure_disparity(std::vector<std::string> const& images,
+std::optional<stereo::SheetAlignment> measure_disparity(std::vector<stereo::SimultaneousImages> const& images,
                                                         std::array<PinholeCamera const*, 2> const& cameras,
-                                                        stereo::ObjectPlane const& plane, SourceFiles& sources) {
-  std::vector<stereo::SimultaneousImages> const read = read_simultaneous_images(images, sources);
+                                                        stereo::ObjectPlane const& plane) {
   try {
-    return stereo::align_sheet(cameras, read, plane, choose_disparity_settings(read.front()), 1);
+    return stereo::align_sheet(cameras, images, plane, choose_disparity_settings(images.front()), 1);
   } catch (DataError const& error) {
     spdlog::info("the disparity between the cameras is unknown: {}", error.what());
     return std::nullopt;

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <optional>
 
 #include "render/base/error.h"
-#include "render/setup/toml_text.h"
+#include "render/setup/setup_node.h"
 #include "studies/case/uncertain_inputs.h"
 #include "studies/design/sheet.h"
 
@@ -60,9 +61,13 @@ SetupDocument with_small_dots(SetupDocument document) {
   return document;
 }
 
-DesignVariant load_variant(SetupDocument document, DesignQuestion const& question, std::string const& camera,
+/// Loads a setup, with small dots if their diameter is a design variable.
+CaseSetup load_with_small_dots(SetupDocument const& document, DesignQuestion const& question) {
+  return load_case_setup(chooses_dots(question) ? with_small_dots(document.copy()) : document.copy());
+}
+
+DesignVariant make_variant(SetupDocument document, CaseSetup const& loaded, std::string const& camera,
                            std::string const& lens) {
-  CaseSetup const loaded = load_case_setup(chooses_dots(question) ? with_small_dots(document.copy()) : document.copy());
   if (auto const [key, reason] = beyond_design(loaded.setup); !key.empty()) {
     auto const dot = key.find('.');
     SetupTable table = dot == std::string::npos ? document.root() : document.root().table(key.substr(0, dot));
@@ -83,14 +88,6 @@ std::vector<double> values_of(FreeChoice const& free, DesignVariant const& varia
   return values;
 }
 
-void leave_out(SetupDocument& document, std::string const& table, std::string const& key) {
-  SetupNode const* const node = document.find({table});
-  if (!node || !node->find(key)) return;
-  SetupNode rest = *node;
-  std::erase_if(rest.members, [&key](SetupMember const& member) { return member.key == key; });
-  document.set({table}, rest);
-}
-
 std::string parts_name(std::string const& camera, std::string const& lens) {
   std::string name;
   for (std::string const& file : {camera, lens}) {
@@ -102,12 +99,15 @@ std::string parts_name(std::string const& camera, std::string const& lens) {
 }  // namespace
 
 std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question,
-                                           std::vector<SkippedVariant>& skipped) {
+                                           std::vector<SkippedVariant>& skipped, CaseSetup const* loaded) {
   std::vector<DesignVariant> variants;
   std::exception_ptr first;
   auto const add = [&](SetupDocument const& with_both, std::string const& camera, std::string const& lens) {
     try {
-      variants.push_back(load_variant(with_both.copy(), question, camera, lens));
+      bool const known = loaded && camera.empty() && lens.empty() && !chooses_dots(question);
+      std::optional<CaseSetup> own;
+      if (!known) own = load_with_small_dots(with_both, question);
+      variants.push_back(make_variant(with_both.copy(), known ? *loaded : *own, camera, lens));
     } catch (SetupError const& error) {
       if (camera.empty() && lens.empty()) throw;  // the setup itself is invalid
       if (!first) first = std::current_exception();
@@ -183,13 +183,13 @@ std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> c
   return name.empty() ? "the setup" : name;
 }
 
-std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question,
-                          DesignPoint<double> const& bench) {
+SetupDocument applied_setup(DesignVariant const& variant, DesignQuestion const& question,
+                            DesignPoint<double> const& bench) {
   SetupDocument document = variant.document.copy();
   std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
                                                bench.dot_diameter};
   // remove the other key of the dot diameter
-  if (chooses_dots(question)) leave_out(document, "target", "dot_diameter_px");
+  if (chooses_dots(question)) document.remove({"target", "dot_diameter_px"});
   for (FreeChoice const& free : question.free) {
     if (free.choice == Choice::focal_length && !variant.lens.empty()) continue;
     ChoiceKey const& key = choice_key(free.choice);
@@ -198,14 +198,12 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
     document.set({path.substr(0, dot), path.substr(dot + 1)},
                  setup_number(value[static_cast<std::size_t>(free.choice)] / key.unit));
   }
-  // Load the setup again: verifies that it can be rendered, and makes its file names absolute.
+  // Load the setup: verifies that it can be rendered, and makes its file names absolute.
   std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
-  CaseSetup const loaded = load_case_setup(std::move(document));
-  SetupNode root = parse_toml(insert_uncertain_inputs(loaded.document.written(), uncertain), "setup");
-  std::erase_if(root.members, [](SetupMember const& member) {
-    return std::find(question_tables.begin(), question_tables.end(), member.key) != question_tables.end();
-  });
-  return toml_document(root);
+  SetupDocument applied = std::move(load_case_setup(std::move(document)).document);
+  insert_uncertain_inputs(applied, uncertain);
+  for (char const* const table : question_tables) applied.remove({table});
+  return applied.unread();
 }
 
 }  // namespace gladstone::inline design

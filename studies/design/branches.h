@@ -28,10 +28,11 @@ struct SkippedVariant {
 /// Combines every camera of the inventory with the setup's lens and with every prescription.
 /// @param document  a valid setup
 /// @param skipped   receives the incompatible combinations
+/// @param loaded    the same setup, loaded; null: it is loaded if needed
 /// @throws SetupError if no combination is compatible, if the setup's camera and lens are not, or if the closed forms
 ///   do not apply
 std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question,
-                                           std::vector<SkippedVariant>& skipped);
+                                           std::vector<SkippedVariant>& skipped, CaseSetup const* loaded = nullptr);
 
 /// Returns all combinations of the variants and the discrete values of the design variables. The variants must outlive
 /// them.
@@ -43,7 +44,7 @@ std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> c
 
 /// Returns the setup of a design, ready to render: the variant's setup with the design's values, without the tables
 /// that request the design.
-std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question,
-                          DesignPoint<double> const& bench);
+SetupDocument applied_setup(DesignVariant const& variant, DesignQuestion const& question,
+                            DesignPoint<double> const& bench);
 
 }  // namespace gladstone::inline design

@@ -35,9 +35,10 @@ void refuse_setup_of_results(std::string const& path) {
   }
 }
 
-AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& document, DesignQuestion question) {
+AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& document, CaseSetup const& loaded,
+                          DesignQuestion question) {
   AnsweredQuestion result{std::move(question), {}, {}, {}, {}};
-  result.variants = design_variants(document, result.question, result.skipped);
+  result.variants = design_variants(document, result.question, result.skipped, &loaded);
   std::vector<DesignBranch> const branches = design_branches(result.variants, result.question);
   Requirements const& requirements = result.question.requirements;
   result.answer = recommend(requirements.objective, requirements.limits, branches);
@@ -80,7 +81,7 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
 /// @param loaded  the setup as given
 void add_answer(DesignRequest const& request, SetupDocument const& document, DesignQuestion question,
                 CaseSetup const& loaded, std::optional<OutputFile>& applied, DesignReport& report) {
-  AnsweredQuestion const& result = report.answer.emplace(answered(request, document, std::move(question)));
+  AnsweredQuestion const& result = report.answer.emplace(answered(request, document, loaded, std::move(question)));
   report.text += answer_text(result);
   report.feasible = result.feasible();
   if (!result.answer.feasible()) return;
@@ -90,7 +91,7 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
     report.text += "rows of the design sheet that the recommended set-up does not meet with a margin\n" + missed;
   if (applied && report.feasible) {
     DesignVariant const& variant = result.variants[result.chosen().branch.variant];
-    std::string const text = applied_setup(variant, result.question, *report.best);
+    std::string const text = applied_setup(variant, result.question, *report.best).written();
     applied->write(text.data(), text.size());
     applied->commit();
   }

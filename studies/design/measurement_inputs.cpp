@@ -8,7 +8,7 @@
 
 #include "render/medium/gladstone_dale.h"
 #include "render/render.h"
-#include "render/setup/toml_text.h"
+#include "render/setup/setup_node.h"
 #include "studies/case/log_silencer.h"
 #include "studies/compare/uncorrected_bias.h"
 #include "studies/design/input_draws.h"
@@ -46,12 +46,9 @@ SetupNode steady_gradient() {
 
 /// Computes the mean displacement along the gradient over the dots of a setup, with a key set to a value [px].
 double traced_displacement(CaseSetup const& loaded, UncertainInput const& input, double value, Renderer& renderer) {
-  SetupNode root = parse_toml(loaded.document.written(), "setup");
+  SetupDocument changed = loaded.document.unread();
   // remove the tables on which the displacement does not depend
-  std::erase_if(root.members, [](SetupMember const& member) {
-    return member.key == "light" || member.key == "correlate" || member.key == "render";
-  });
-  SetupDocument changed = SetupDocument::from_text(toml_document(root), "setup", loaded.document.folder());
+  for (char const* const table : {"light", "correlate", "render"}) changed.remove({table});
   int const columns = std::min(loaded.setup.camera.columns, traced_px),
             rows = std::min(loaded.setup.camera.rows, traced_px);
   changed.set({"camera", "pixels"}, setup_array({setup_integer(columns), setup_integer(rows)}));

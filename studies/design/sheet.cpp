@@ -7,7 +7,6 @@
 #include "render/planning.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
-#include "studies/case/light_exposure.h"
 
 namespace gladstone::inline design {
 namespace {
@@ -62,7 +61,7 @@ FixedDesignParameters collect_fixed_parameters(CaseSetup const& loaded) {
   Setup const& setup = loaded.setup;
   FixedDesignParameters given;
   given.camera = setup.camera;
-  given.light = read_light(loaded.document.copy().root());
+  given.light = loaded.light;
   given.wavelength = setup.medium.wavelength;
   given.gladstone_dale = setup.medium.gladstone_dale;
   given.ambient_index = setup.ambient_index();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "studies/design/simulated_repeats.h"
@@ -46,7 +47,7 @@ struct BenchStudies {
     if (rays) setup.set({"render", "rays_per_dot"}, setup_integer(static_cast<long long>(*rays)));
     StudyFile study;
     study.path = study.base_path = "recommended setup";
-    study.base_text = setup.written();
+    study.base = std::make_shared<SetupDocument const>(std::move(setup));
     AxisPlan& medium = study.axes.emplace_back();
     medium.key = "medium.field";
     medium.path = {"medium", "field"};
@@ -63,9 +64,9 @@ struct BenchStudies {
   }
 };
 
-BenchStudies make_studies(std::string const& setup, DesignPoint<double> const& bench, std::size_t repeats,
+BenchStudies make_studies(SetupDocument const& setup, DesignPoint<double> const& bench, std::size_t repeats,
                           std::uint64_t seed) {
-  SetupDocument base = SetupDocument::from_text(setup, "recommended setup");
+  SetupDocument base = setup.copy();
   CameraSetup const& camera = bench.given->camera;
   int const side =
       std::max(3 * bench.given->first_window_px,
@@ -123,7 +124,7 @@ struct Peaks {
 
 int compared_apart_px(DesignPoint<double> const& bench) { return bench.given->window.window_px() / 2; }
 
-SimulatedDesign simulate(std::string const& setup, DesignPoint<double> const& bench, std::size_t repeat_count,
+SimulatedDesign simulate(SetupDocument const& setup, DesignPoint<double> const& bench, std::size_t repeat_count,
                          std::uint64_t seed, CaseRunner& runner, std::string const& device,
                          std::function<void()> const& finished) {
   SimulatedDesign simulated;

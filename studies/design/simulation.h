@@ -64,7 +64,7 @@ int compared_apart_px(DesignPoint<double> const& bench);
 /// @param seed      base seed of the repeats
 /// @param finished  called after every case
 /// @throws as CaseRunner::run; errors of a case are reported in `failed`
-SimulatedDesign simulate(std::string const& setup, DesignPoint<double> const& bench, std::size_t repeats,
+SimulatedDesign simulate(SetupDocument const& setup, DesignPoint<double> const& bench, std::size_t repeats,
                          std::uint64_t seed, CaseRunner& runner, std::string const& device,
                          std::function<void()> const& finished);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include "analysis/errors/error_summary.h"
 #include "analysis/errors/uncertainty_quality.h"
@@ -79,14 +80,21 @@ TextTable errors_table(CaseView const& view) {
   return table;
 }
 
-/// Returns setup, frames and compared files with their hashes.
+/// Setup, frames and compared files of a case with their hashes, and the decoded frames.
+struct CaseSources {
+  SourceFiles files;
+  FramePair<double> frames;
+};
+
 /// @throws DataError if a frame differs from that of the vectors
-SourceFiles case_sources(std::string const& folder, Comparison const& compared) {
-  SourceFiles sources;
+CaseSources read_case_sources(std::string const& folder, Comparison const& compared) {
+  CaseSources read;
+  SourceFiles& sources = read.files;
   sources.add("setup", in_case(folder, case_file::setup), SourceFiles::Holds::bytes);
-  for (auto const& [name, file] : {std::pair{"reference", case_file::reference}, std::pair{"flow", case_file::flow}}) {
+  for (auto const& [name, file, frame] : {std::tuple{"reference", case_file::reference, &read.frames.reference},
+                                          std::tuple{"flow", case_file::flow, &read.frames.flow}}) {
     std::string const path = in_case(folder, file), told = compared.sources.sha256(name);
-    sources.add(name, path, SourceFiles::Holds::pixels);
+    *frame = sources.add_image(name, path);
     if (told.empty() || told == sources.sha256(name)) continue;
     throw DataError(ErrorCode::changed, path,
                     fmt::format("is another frame than the vectors were measured on (the SHA-256 of its pixels is "
@@ -97,7 +105,7 @@ SourceFiles case_sources(std::string const& folder, Comparison const& compared) 
     bool const file = !source.name.empty() && !source.path.empty();
     if (file) sources.add(source.name, source.path, source.holds, source.sha256);
   }
-  return sources;
+  return read;
 }
 
 /// Returns the commands that reproduce the report, which is the last one.
@@ -165,6 +173,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   CaseView view(compare_case(options.source, device, compare));
   Comparison const& all = view.comparison;
   add_maps(view);
+  CaseSources const sources = read_case_sources(options.source, all);
   ReportPage page;
   page.title = "Case " + case_name(options.source);
   page.question = fmt::format(
@@ -177,7 +186,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   }
   std::optional<LayoutView> const bench = layout_view(all.setup->copy());
   if (bench) page.sections.push_back(layout_section(*bench, "the case"));
-  page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
+  page.sections.push_back({"Images", {frame_pictures(sources.frames, "The two frames")}});
   if (!view.maps.empty())
     page.sections.push_back({"Maps",
                              {Chart{"field", "Displacement, errors, and the contribution of each cause",
@@ -208,7 +217,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
       {"Settings",
        {Verbatim{"The resolved setup", read_text_file(setup)},
         Verbatim{"Summary of the rendering", read_text_file(in_case(options.source, case_file::summary))}}});
-  page.sections.push_back(provenance_section(case_sources(options.source, all), commands));
+  page.sections.push_back(provenance_section(sources.files, commands));
   return page;
 }
 

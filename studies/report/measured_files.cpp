@@ -11,7 +11,6 @@
 #include "analysis/vectors/vector_screening.h"
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
-#include "render/files/image_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/warning_log.h"
 #include "studies/compare/compared_vectors.h"
@@ -92,11 +91,14 @@ MeasuredFiles measured_files(ReportOptions const& options) {
   }
   files.sources.on_change("write the report again");
   files.sources.add("setup", files.setup, SourceFiles::Holds::bytes);
-  files.frames = std::all_of(frame_files.begin(), frame_files.end(),
-                             [&](auto const& frame) { return fs::exists(fs::path(options.source) / frame.second); });
-  for (auto const& [name, file] : frame_files) {
-    if (files.frames) files.sources.add(name, (fs::path(options.source) / file).string(), SourceFiles::Holds::pixels);
-  }
+  bool const frames = std::all_of(frame_files.begin(), frame_files.end(), [&](auto const& frame) {
+    return fs::exists(fs::path(options.source) / frame.second);
+  });
+  auto const read = [&](std::size_t i) {
+    auto const& [name, file] = frame_files[i];
+    return files.sources.add_image(name, (fs::path(options.source) / file).string());
+  };
+  if (frames) files.frames = FramePair<double>{read(0), read(1)};
   files.sources.add("vectors", files.vectors);
   for (std::size_t i = 0; i < files.repeats.size(); ++i)
     files.sources.add(fmt::format("repeat {}", i + 2), files.repeats[i]);
@@ -105,9 +107,10 @@ MeasuredFiles measured_files(ReportOptions const& options) {
 
 void check_frames_match_camera(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera) {
   if (!files.frames) return;
-  for (auto const& [name, file] : frame_files) {
+  for (std::size_t i = 0; i < frame_files.size(); ++i) {
+    auto const& [name, file] = frame_files[i];
     std::string const path = (fs::path(options.source) / file).string();
-    Image<double> const frame = read_image(path);
+    Image<double> const& frame = i == 0 ? files.frames->reference : files.frames->flow;
     if (frame.columns() != camera.columns || frame.rows() != camera.rows) {
       throw DataError(
           ErrorCode::wrong_shape, path,

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/vectors/displacement_field.h"
+#include "render/base/frame_pair.h"
 #include "render/files/source_files.h"
 #include "render/scene/setup.h"
 #include "studies/report/report.h"
@@ -13,9 +15,9 @@ namespace gladstone::inline report {
 /// Files of a measurement in their present state.
 struct MeasuredFiles {
   std::string setup, vectors;
-  std::vector<std::string> repeats;  ///< vectors of repeated measurements
-  bool frames = false;               ///< true if the folder contains the frames
-  SourceFiles sources;               ///< setup, frames, vectors and repeats with their hashes
+  std::vector<std::string> repeats;         ///< vectors of repeated measurements
+  std::optional<FramePair<double>> frames;  ///< decoded frames; nullopt: the folder contains none
+  SourceFiles sources;                      ///< setup, frames, vectors and repeats with their hashes
 };
 
 /// Locates and hashes the files of a measurement.

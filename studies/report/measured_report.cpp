@@ -166,7 +166,7 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   page.doubtful = read.incomplete;
   std::optional<LayoutView> const drawn_bench = layout_view(loaded.copy());
   if (drawn_bench) page.sections.push_back(layout_section(*drawn_bench, "the measurement"));
-  if (files.frames) page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
+  if (files.frames) page.sections.push_back({"Images", {frame_pictures(*files.frames, "The two frames")}});
   if (gridded) page.sections.push_back(maps_section(field, all, camera, said.measurand));
   page.sections.push_back({"Uncertainty", {TextList{said.all()}, inputs_table(known)}});
   page.sections.push_back(causes_section(known.twin));

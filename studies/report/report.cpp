@@ -116,9 +116,8 @@ WrittenReport write_report(ReportOptions const& options, Backend const& device) 
   return written;
 }
 
-FramePictures frame_pictures(std::string const& folder, std::string const& title) {
-  Image<double> const reference = read_image((fs::path(folder) / case_file::reference).string());
-  Image<double> const flow = read_image((fs::path(folder) / case_file::flow).string());
+FramePictures frame_pictures(FramePair<double> const& frames, std::string const& title) {
+  auto const& [reference, flow] = frames;
   std::vector<double> levels(reference.begin(), reference.end());
   double const black = quantile(levels, 0), white = std::max(black + 1, quantile(levels, 0.999));
   bool const cut = reference.columns() > most_frame_px || reference.rows() > most_frame_px;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/frame_pair.h"
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
 #include "studies/compare/reconstruct.h"
@@ -62,6 +63,6 @@ ReportSection drawn_figures(
 ReportSection provenance_section(SourceFiles const& sources, std::vector<std::string> const& commands);
 
 /// Converts both frames to 8-bit images of equal grey scale; of large frames, the central part.
-FramePictures frame_pictures(std::string const& folder, std::string const& title);
+FramePictures frame_pictures(FramePair<double> const& frames, std::string const& title);
 
 }  // namespace gladstone::inline report

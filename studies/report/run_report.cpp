@@ -25,16 +25,26 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_told = 12;  ///< maximum number of values of an axis in a list
 
+/// Reads the frames of a case; nullopt if the study has not stored them.
+std::optional<FramePair<double>> read_frames(std::string const& run, StudyRow const& row, SourceFiles& sources) {
+  fs::path const folder = fs::path(run) / run_file::cases / std::to_string(row.index);
+  if (!fs::exists(folder / case_file::reference)) return std::nullopt;
+  auto const read = [&](char const* name) {
+    return sources.add_image(fmt::format("{} of case {}", name, row.index), (folder / name).string());
+  };
+  return FramePair<double>{read(case_file::reference), read(case_file::flow)};
+}
+
 /// Returns the frames of a case, if the study has stored them.
-ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow const& row, std::string const& which) {
-  std::string const folder = (fs::path(run) / run_file::cases / std::to_string(row.index)).string();
+ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow const& row,
+                      std::optional<FramePair<double>> const& frames, std::string const& which) {
   std::string const title =
       fmt::format("{}: case {}, {}, rms {:.3g} px", which, row.index, study.title(row), study.of(row, study.main));
-  if (!fs::exists(fs::path(folder) / case_file::reference)) {
+  if (!frames) {
     return Paragraph{fmt::format("{}. Its images were not kept: gladstone sweep run {} --keep-images --case {}", title,
                                  shell_word(run), row.index)};
   }
-  return frame_pictures(folder, title);
+  return frame_pictures(*frames, title);
 }
 
 /// Returns the set-up of a setup; nullopt if a file that it names no longer exists, or if it is invalid without the
@@ -72,20 +82,12 @@ ReportSection setup_section(StudyView const& study, LayoutView const* base) {
   return section;
 }
 
-/// Returns the inputs of the report: planned study, its tables, and the frames shown.
-SourceFiles run_sources(std::string const& run, std::vector<StudyRow const*> const& shown) {
+/// Returns the inputs of the report except the frames: planned study and its tables.
+SourceFiles run_sources(std::string const& run) {
   SourceFiles sources;
   for (char const* const name : {run_file::study, run_file::base, run_file::manifest}) {
     std::string const path = (fs::path(run) / name).string();
     if (fs::exists(path)) sources.add(name, path, SourceFiles::Holds::bytes);
-  }
-  for (StudyRow const* const row : shown) {
-    for (char const* const name : {case_file::reference, case_file::flow}) {
-      fs::path const path = fs::path(run) / run_file::cases / std::to_string(row->index) / name;
-      if (fs::exists(path)) {
-        sources.add(fmt::format("{} of case {}", name, row->index), path.string(), SourceFiles::Holds::pixels);
-      }
-    }
   }
   return sources;
 }
@@ -183,13 +185,10 @@ ReportSection settings_section(std::string const& run, StudyView const& study, S
 }
 
 /// Returns the inputs of the report and the commands that reproduce it.
-ReportSection origin_section(std::string const& run, Extremes const& extreme) {
-  std::vector<StudyRow const*> shown{extreme.best};
-  if (extreme.worst != extreme.best) shown.push_back(extreme.worst);
+ReportSection origin_section(std::string const& run, SourceFiles const& sources) {
   std::string const place = shell_word(run);
-  return provenance_section(run_sources(run, shown),
-                            {"gladstone sweep plan study.toml -o " + place, "gladstone sweep run " + place,
-                             "gladstone sweep collect " + place, "gladstone report " + place});
+  return provenance_section(sources, {"gladstone sweep plan study.toml -o " + place, "gladstone sweep run " + place,
+                                      "gladstone sweep collect " + place, "gladstone report " + place});
 }
 
 }  // namespace
@@ -214,8 +213,11 @@ ReportPage run_report(ReportOptions const& options) {
                                   bench = bench_of_text(best_text, "the setup of " + whose_best);
   page.sections.push_back(setup_section(study, base ? &*base : nullptr));
   add_charts(page, study);
+  SourceFiles sources = run_sources(run);
+  std::optional<FramePair<double>> const of_best = read_frames(run, best, sources),
+                                         of_worst = &worst == &best ? of_best : read_frames(run, worst, sources);
   ReportSection frames{"Best and worst case",
-                       {frames_of(run, study, best, "Best"), frames_of(run, study, worst, "Worst")}};
+                       {frames_of(run, study, best, of_best, "Best"), frames_of(run, study, worst, of_worst, "Worst")}};
   if (bench && (!base || layout_text(*base) != layout_text(*bench))) {
     frames.blocks.push_back(layout_block(*bench, whose_best));
   }
@@ -231,7 +233,7 @@ ReportPage run_report(ReportOptions const& options) {
   }
   page.sections.push_back({"All cases", {cases_table(study)}});
   page.sections.push_back(settings_section(run, study, best, base_text, best_text, whose_best));
-  page.sections.push_back(origin_section(run, extreme));
+  page.sections.push_back(origin_section(run, sources));
   return page;
 }
 

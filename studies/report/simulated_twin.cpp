@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "render/base/error.h"
 #include "render/base/progress.h"
@@ -64,7 +65,7 @@ SetupNode field_of(std::string const& file, double spacing, Vec2d centre) {
 }
 
 StudyFile study_of(CaseSetup const& loaded, SetupNode field) {
-  SetupDocument base = loaded.document.copy();
+  SetupDocument base = loaded.document.unread();
   CameraSetup const& camera = loaded.setup.camera;
   base.set({"camera", "pixels"}, setup_array({setup_integer(std::min(camera.columns, most_twin_px)),
                                               setup_integer(std::min(camera.rows, most_twin_px))}));
@@ -77,7 +78,7 @@ StudyFile study_of(CaseSetup const& loaded, SetupNode field) {
   value.node = std::move(field);
   StudyFile study;
   study.path = study.base_path = "twin";
-  study.base_text = base.written();
+  study.base = std::make_shared<SetupDocument const>(std::move(base));
   study.axes.push_back(std::move(medium));
   study.repeats = twin_repeats;
   return study;

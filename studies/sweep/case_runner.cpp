@@ -148,8 +148,9 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
                          CaseResult& result) {
   auto start = std::chrono::steady_clock::now();
   Shared& shared = *shared_;
-  CaseSetup loaded =
-      load_case_setup(SetupDocument::from_text(one.setup, fmt::format("case {}", one.index)), FieldMemory::taken);
+  CaseSetup loaded = load_case_setup(
+      one.document ? one.document->copy() : SetupDocument::from_text(one.setup, fmt::format("case {}", one.index)),
+      FieldMemory::taken);
   CaseKeys const keys = case_keys(loaded, one.inputs);
   CaseKeys const plans =
       sharing_ == Sharing::over_repeats ? case_keys(loaded, one.inputs, RepeatSeeds::left_out) : keys;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "render/files/input_file.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone::inline sweep {
 
@@ -37,6 +39,8 @@ struct ManifestCase {
                                                                    ///< order
   /// Complete setup (TOML) with absolute file names; "auto" values are not resolved.
   std::string setup;
+  /// The same setup of a case that was planned in this process; null: read from a manifest.
+  std::shared_ptr<SetupDocument const> document;
   std::map<std::string, std::string> inputs;  ///< file_hash() of every file in the setup, by its absolute name
   /// Hash, by content_hash(), of the line without its last member, which contains this hash.
   std::string line_hash;

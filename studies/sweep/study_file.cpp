@@ -39,8 +39,10 @@ class StudyReader {
     study_.base_path = root.required_path("base");
     if (!study_.base_path.empty()) {
       try {
-        study_.base_text = read_text_file(study_.base_path, "a setup file", most_setup_bytes);
-        if (SetupDocument::from_text(study_.base_text, study_.base_path).empty()) {
+        study_.base = std::make_shared<SetupDocument const>(
+            SetupDocument::from_text(read_text_file(study_.base_path, "a setup file", most_setup_bytes),
+                                     study_.base_path, folder_of(study_.base_path)));
+        if (study_.base->empty()) {
           throw DataError(ErrorCode::missing_content, study_.base_path, "is empty (no key is set)");
         }
       } catch (DataError const& error) {

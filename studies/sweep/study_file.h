@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "render/setup/setup_table.h"
 #include "studies/sweep/study_axis.h"
 
 namespace gladstone::inline sweep {
@@ -14,8 +16,9 @@ enum class StudyMode { grid, zip, sobol };
 struct StudyFile {
   std::string path;
   std::string text;
-  std::string base_path, base_text;
-  std::vector<AxisPlan> axes;  ///< axes in the order of the file
+  std::string base_path;
+  std::shared_ptr<SetupDocument const> base;  ///< setup from which every case starts
+  std::vector<AxisPlan> axes;                 ///< axes in the order of the file
   StudyMode mode = StudyMode::grid;
   std::size_t samples = 0;  ///< number of samples in sobol mode
   std::size_t repeats = 1;

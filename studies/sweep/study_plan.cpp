@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <mutex>
 #include <set>
@@ -24,8 +23,6 @@
 namespace gladstone::inline sweep {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Returns the seed of a repeat. TOML integers have 63 bits.
 std::uint64_t case_seed(StudyFile const& study, std::size_t repeat) {
   return repeat == 0 ? study.seed : repeat_seed(study.seed, repeat) >> 1;
@@ -43,10 +40,9 @@ bool axes_give(StudyFile const& study, std::vector<AxisValue> const& values, std
   return false;
 }
 
-/// Composes a setup from the base and the axes' values, and sets the seeds that no axis defines.
-SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::vector<AxisValue> const& values,
-                      std::uint64_t seed) {
-  SetupDocument document = base.copy();
+/// Composes a setup from the study's base and the axes' values, and sets the seeds that no axis defines.
+SetupDocument compose(StudyFile const& study, std::vector<AxisValue> const& values, std::uint64_t seed) {
+  SetupDocument document = study.base->copy();
   for (std::size_t k = 0; k < values.size(); ++k) document.set(study.axes[k].path, values[k].node);
   SetupNode number = setup_integer(static_cast<long long>(seed));
   number.place = study.place;
@@ -143,10 +139,9 @@ void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values
   }
 }
 
-std::vector<SetupProblem> problems_at(SetupDocument const& base, StudyFile const& study,
-                                      std::vector<AxisValue> const& point, std::size_t& more) {
+std::vector<SetupProblem> problems_at(StudyFile const& study, std::vector<AxisValue> const& point, std::size_t& more) {
   try {
-    load_case_setup(compose(base, study, point, study.seed), FieldMemory::taken);
+    load_case_setup(compose(study, point, study.seed), FieldMemory::taken);
   } catch (SetupError const& error) {
     std::vector<SetupProblem> problems = error.problems();
     for (SetupProblem& problem : problems) blame_the_axis(study, point, problem);
@@ -156,7 +151,7 @@ std::vector<SetupProblem> problems_at(SetupDocument const& base, StudyFile const
   return {};
 }
 
-void try_all(SetupDocument const& base, StudyFile const& study) {
+void try_all(StudyFile const& study) {
   std::size_t const points = points_to_try(study), tried = std::min(points, StudyPlan::most_tried);
   struct Found {
     std::vector<SetupProblem> problems;
@@ -168,7 +163,7 @@ void try_all(SetupDocument const& base, StudyFile const& study) {
     for (std::size_t i = begin; i < end; ++i) {
       // If there are too many points, check evenly spaced ones, including the first and the last.
       std::size_t const point = tried == points ? i : i * (points - 1) / (tried - 1);
-      found[i].problems = problems_at(base, study, point_to_try(study, point), found[i].more);
+      found[i].problems = problems_at(study, point_to_try(study, point), found[i].more);
     }
     progress.advance(end - begin);
   });
@@ -196,7 +191,6 @@ std::string words_of(std::vector<AxisValue> const& values) {
 struct StudyPlan::Parts {
   StudyFile study;
   std::string device;
-  SetupDocument base;
   std::mutex mutex;  ///< protects the members below
   /// Paths of the keys that are file names, for each words_of() the axis values.
   std::map<std::string, std::vector<std::vector<std::string>>> file_keys;
@@ -225,10 +219,8 @@ struct StudyPlan::Parts {
 };
 
 StudyPlan::StudyPlan(StudyFile study, std::string device) {
-  SetupDocument base =
-      SetupDocument::from_text(study.base_text, study.base_path, fs::path(study.base_path).parent_path().string());
-  try_all(base, study);
-  parts_.reset(new Parts{std::move(study), std::move(device), std::move(base), {}, {}, {}});
+  try_all(study);
+  parts_.reset(new Parts{std::move(study), std::move(device), {}, {}, {}});
 }
 
 StudyPlan::~StudyPlan() = default;
@@ -237,14 +229,14 @@ StudyPlan::StudyPlan(StudyPlan&&) noexcept = default;
 StudyFile const& StudyPlan::study() const { return parts_->study; }
 
 std::string StudyPlan::base() const {
-  SetupDocument document = parts_->base.copy();
+  SetupDocument document = parts_->study.base->copy();
   document.name_files(parts_->keys_of_files({}, document));
   return document.written();
 }
 
 Warnings StudyPlan::warnings() const {
   StudyFile const& study = parts_->study;
-  if (!describes_sequence(compose(parts_->base, study, point_to_try(study, 0), study.seed))) return {};
+  if (!describes_sequence(compose(study, point_to_try(study, 0), study.seed))) return {};
   return {{WarningCode::ignored, study.path,
            "every case is the first pair of the base's [sequence]; for other pairs add the axis \"sequence.pair\""}};
 }
@@ -263,10 +255,12 @@ ManifestCase StudyPlan::without_hash(std::size_t index) const {
   for (std::size_t k = 0; k < values.size(); ++k) {
     one.parameters.emplace_back(study.axes[k].key, values[k].parameter);
   }
-  SetupDocument document = compose(parts_->base, study, values, one.seed);
+  SetupDocument document = compose(study, values, one.seed);
   document.name_files(parts_->keys_of_files(values, document));
   one.setup = document.written();
   for (std::string const& name : document.file_names()) one.inputs[name] = parts_->hash_of(name);
+  document.name_files({});  // the names are absolute now, and reading the setup lists them again
+  one.document = std::make_shared<SetupDocument const>(std::move(document));
   return one;
 }
 

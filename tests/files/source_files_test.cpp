@@ -108,6 +108,23 @@ TEST_F(SourceFilesTest, AFileThatHoldsSomethingElseIsNamedWithWhatToDo) {
   EXPECT_THAT([&] { sources.check(); }, ThrowsDataError(ErrorCode::changed, "a.tif"));
 }
 
+// An image that is added under two names is decoded once: both names have the hash of what was read first.
+TEST_F(SourceFilesTest, AnImageIsReadOnce) {
+  std::string const file = in_folder("a.tif");
+  Image<std::uint16_t> written = picture();
+  write_tiff(file, written, {});
+  SourceFiles sources;
+  Image<double> const image = sources.add_image("frame", file);
+  EXPECT_TRUE(std::equal(image.begin(), image.end(), written.begin(), written.end()));
+  EXPECT_EQ(sources.sha256("frame"), pixel_sha256(written));
+  sources.check();
+  ++written(0, 0);
+  write_tiff(file, written, {});
+  sources.add("again", file, Holds::pixels);
+  EXPECT_EQ(sources.sha256("again"), sources.sha256("frame"));
+  EXPECT_THAT([&] { sources.check(); }, ThrowsDataError(ErrorCode::changed, "a.tif"));
+}
+
 TEST_F(SourceFilesTest, AnHdf5FileNamesItsSourcesAndIsNotWrittenWhereTheyChange) {
   write("rays.csv", "1,2\n");
   FileOrigin origin{"test", 1, "", 1, "cpu", {}};

@@ -524,6 +524,56 @@ TEST(SetupDocument, AListOfFilesIsRelativeToTheSetupToo) {
                                            "invalid_value at case.toml:4:1"));
 }
 
+TEST(SetupDocument, ARemovedKeyIsUnknownToTheReader) {
+  auto setup = document("[target]\nfile = \"a.csv\"\nsize = 2\n[[camera]]\nbits = 12\n");
+  setup.remove({"target", "size"});
+  setup.remove({"camera", "bits"});
+  for (std::vector<std::string> const absent : {std::vector<std::string>{"target", "colour"}, {"medium", "field"}}) {
+    setup.remove(absent);
+  }
+  EXPECT_FALSE(setup.find({"target", "size"}));
+  EXPECT_FALSE(setup.find({"camera", "bits"}));
+  EXPECT_TRUE(setup.find({"target", "file"}));
+  EXPECT_EQ(setup.root().table("target").number("size", 1), 1);
+}
+
+TEST(SetupDocument, UnreadIsTheParsedText) {
+  auto setup = document("[target]\nsize = 2\nfile = \"a.csv\"\n[lens]\nf = 1\n");
+  setup.root().table("target").required_path("file");
+  setup.set({"lens", "apertures"}, setup_array({setup_number(1.0), setup_integer(2)}));
+  setup.set({"camera", "bits"}, setup_integer(8));
+  auto unread = setup.unread(), parsed = SetupDocument::from_text(setup.written(), "case.toml");
+  EXPECT_EQ(unread.written(), parsed.written());
+  EXPECT_NE(unread.written(), setup.written());  // which has the keys in the order in which they were set
+  EXPECT_TRUE(unread.file_names().empty());
+  EXPECT_EQ(unread.root().table("target").required_path("file"), "/data/cases/a.csv");
+  for (char const* const table : {"lens", "camera"}) unread.root().mark_as_read(table);
+  EXPECT_THAT(problems(unread), ElementsAre("unknown_key at case.toml:2:1"));
+}
+
+// Reading a changed table again gives the record that reading the changed setup once gives.
+TEST(SetupDocument, ATableIsReadAgainAsIfForTheFirstTime) {
+  auto const read = [](SetupTable target) {
+    target.required_path("file");
+    target.has("size_mm") ? target.number("size_mm", 0) : target.number("size_px", 3);
+  };
+  auto const change = [](SetupDocument& setup) { setup.set({"target", "size_mm"}, setup_number(0.5)); };
+  char const* const text = "[lens]\nf = 1\n[target]\nfile = \"a.csv\"\n[light]\npower = 2\n";
+  auto twice = document(text), once = document(text);
+  change(once);
+  for (SetupDocument* const setup : {&twice, &once}) {
+    setup->root().table("lens").number("f", 0);
+    read(setup->root().table("target"));
+    setup->root().table("light").number("power", 0);
+  }
+  EXPECT_NE(twice.resolved(), once.resolved());
+  change(twice);
+  read(twice.reread("target"));
+  EXPECT_EQ(twice.resolved(), once.resolved());
+  EXPECT_EQ(twice.file_names(), once.file_names());
+  twice.finish();
+}
+
 TEST(SetupDocument, WrittenIsTheTextWithFileNamesMadeAbsolute) {
   auto setup = document("schema = 1\n[target]\nfile = \"a.csv\"\n[medium.field]\nkind = \"none\"\n");
   setup.root().table("target").required_path("file");

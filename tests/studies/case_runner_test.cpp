@@ -146,6 +146,17 @@ TEST_F(CaseRunners, MayTakeTruthOverFromRepeats) {
   }
 }
 
+// The setup of a planned case and its text in the manifest describe the same case.
+TEST_F(CaseRunners, APlannedSetupIsThatOfTheManifest) {
+  for (ManifestCase const& planned : plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 11]\n")) {
+    ASSERT_TRUE(planned.document);
+    EXPECT_EQ(planned.document->written(), planned.setup);
+    ManifestCase read = planned;
+    read.document.reset();
+    expect_same(runner().run(planned), runner().run(read));
+  }
+}
+
 TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
   write("dots.csv", "x_mm,y_mm\n0,0\n0.1,0.1\n");
   CaseRunner one = runner();

@@ -42,15 +42,16 @@ double expected_rays_of_particles(Setup const& setup, double largest) {
 }
 
 /// Sets the number of particles of all cameras to that required by the first camera's image.
-void share_particles(std::vector<CameraCase>& cases, std::vector<Setup> const& read) {
-  Setup const& first = read.front();
+void share_particles(std::vector<CameraCase>& cameras) {
+  Setup const& first = cameras.front().loaded.setup;
   if (first.piv->particles.count != ParticleCount::per_pixel) return;
   SetupNode const number = setup_number(std::round(particle_count(first)));
-  for (CameraCase& one : cases) {
-    SetupNode particles = *one.document.find({"particles"});
-    std::erase_if(particles.members, [](SetupMember const& member) { return member.key == "per_pixel"; });
-    one.document.set({"particles"}, particles);
-    one.document.set({"particles", "number"}, number);
+  for (CameraCase& one : cameras) {
+    SetupDocument& document = one.loaded.document;
+    document.remove({"particles", "per_pixel"});
+    document.set({"particles", "number"}, number);
+    PivSetup& piv = *one.loaded.setup.piv;
+    piv.particles = read_particle_setup(document.reread("particles"), piv.laser.wavelength);
   }
 }
 
