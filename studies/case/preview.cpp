@@ -81,7 +81,7 @@ double preview_exposure(Scene const& scene, FramePair<double> const& light) {
 
 CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
   auto const start = std::chrono::steady_clock::now();
-  bool const planes = !loaded.setup.planes.empty();
+  bool const planes = !loaded.setup.experiment().correlated;
   CasePreview preview;
   if (planes) {
     auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
