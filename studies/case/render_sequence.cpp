@@ -183,7 +183,7 @@ class SequenceRendering {
       medium_ = std::move(rendered.medium);
       shared_.medium = &medium_;
     }
-    Warnings const warnings = pair_warnings(rendered.summary);
+    Warnings const warnings = pair_warnings(*rendered.summary);
     return {{"pair", number},
             {"folder", rendered_sequence_file::pair(number)},
             {"frames", Json::array({first_frame(number), second_frame(number)})},

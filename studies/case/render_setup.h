@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,8 +43,8 @@ struct SharedParts {
 
 /// Result of rendering a setup.
 struct RenderedSetup {
-  BuiltMedium medium;              ///< medium of the case; with several cameras that of the last one
-  nlohmann::ordered_json summary;  ///< contents of summary.json
+  BuiltMedium medium;  ///< medium of the case; with several cameras that of the last one
+  std::shared_ptr<nlohmann::ordered_json const> summary;  ///< contents of summary.json
   std::vector<RenderedCamera> cameras;
 };
 
