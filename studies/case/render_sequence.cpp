@@ -161,7 +161,7 @@ class SequenceRendering {
     for (std::string const& camera : cameras_) {
       fs::path const earlier = sequence_.consecutive ? case_of(number - 1, camera) / case_file::flow
                                                      : frames_of(camera) / rendered_sequence_file::frame(0);
-      shared_.cameras[camera].reference = read_image(earlier.string());
+      shared_.cameras[camera].reference = integer_levels(read_levels(earlier.string()));
     }
   }
 

@@ -33,7 +33,7 @@ struct RenderedCamera {
 struct SharedParts {
   struct OfCamera {
     std::optional<double> exposure_e;          ///< exposure of the first pair [e]; empty: chosen by the setup
-    Image<double> reference;                   ///< grey levels of frame A in other pairs; empty: rendered
+    Image<std::uint16_t> reference;            ///< grey levels of frame A in other pairs; empty: rendered
     std::shared_ptr<ParticleCache> particles;  ///< particles of PIV; null: none
   };
   /// shared parts of each camera by its name, which is empty for the only camera
