@@ -12,17 +12,16 @@ namespace {
 /// Measures the standard error of the images of a general rendering if the number of rays was adaptive.
 double error_of_adaptive_rays(Scene const& scene, RenderPlan const& plan, double level) {
   bool const one_path = plan.rays == 1;
-  return plan.adaptive_criteria && !one_path ? measure_image_error(scene, plan, level) : not_measured;
+  return plan.adaptive_criteria && !one_path ? measure_image_error(scene, plan, level, all_sources(scene))
+                                             : not_measured;
 }
 
 /// Measures the standard error of the images of the dots at side faces, which are rendered ray by ray.
 double error_at_side_faces(Scene const& scene, RenderPlan plan, double level) {
   std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, plan, scene.dots);
   if (at_faces.empty()) return not_measured;
-  plan.rays = scene.setup.render.rays_per_dot.value_or(max_rays_per_source(scene, plan));
-  Scene faces = scene;
-  faces.dots = select_dots(scene.dots, at_faces);
-  return measure_image_error(faces, plan, level);
+  plan.rays = plan.given_rays.value_or(max_rays_per_source(scene, plan));
+  return measure_image_error(scene, plan, level, at_faces);
 }
 
 }  // namespace

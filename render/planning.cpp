@@ -26,13 +26,15 @@ IntegrationStep choose_step(Scene const& scene) {
 /// deflection table alone, whose cost does not depend on the number of dots.
 bool rays_take_far_less_time(Scene const& scene, RenderPlan const& plan) {
   constexpr double long_s = 5, far_less = 60;
-  auto const rays = scene.setup.render.rays_per_dot;
-  if (scene.setup.render.method != RenderMethod::automatic || !rays) return false;
+  if (scene.setup.render.method != RenderMethod::automatic || !plan.given_rays) return false;
   double const by_table = table_seconds(require_focused_dots(scene, plan));
-  return by_table >= long_s && far_less * static_cast<double>(*rays) * rays_seconds(scene, plan) < by_table;
+  return by_table >= long_s && far_less * static_cast<double>(*plan.given_rays) * rays_seconds(scene, plan) < by_table;
 }
 
-/// Completes a plan that has a step with the method and the number of rays.
+}  // namespace
+
+RenderPlan plan_step(Scene const& scene) { return with_step(scene, choose_step(scene)); }
+
 RenderPlan plan_rays(Scene const& scene, RenderPlan const& stepped) {
   if (scene.second_medium) {  // use the larger number of rays of both media
     RenderPlan const a = plan_rays(select_first_pulse(scene), stepped);
@@ -47,15 +49,11 @@ RenderPlan plan_rays(Scene const& scene, RenderPlan const& stepped) {
   if (plan.method == RenderMethod::formula) return plan;  // no rays are traced; the recorded number is one
   if (plan.method == RenderMethod::rays) return plan_rays_by_tracing(scene, plan);
   plan = plan_rays_by_table(require_focused_dots(scene, plan));
-  if (!scene.setup.render.rays_per_dot && !sources_at_side_faces(scene, plan, scene.dots).empty()) {
+  if (!plan.given_rays && !sources_at_side_faces(scene, plan, scene.dots).empty()) {
     plan.adaptive_criteria = determine_adaptive_criteria(scene, plan);
   }
   return plan;
 }
-
-}  // namespace
-
-RenderPlan plan_step(Scene const& scene) { return with_step(scene, choose_step(scene)); }
 
 RenderPlan plan_rendering(Scene const& scene, IntegrationStep const* step) {
   return plan_rays(scene, step ? with_step(scene, *step) : plan_step(scene));

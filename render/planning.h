@@ -11,6 +11,10 @@ namespace gladstone {
 /// @throws DataError as with_step()
 RenderPlan plan_step(Scene const& scene);
 
+/// Completes a plan of plan_step() with the method and the number of rays, as plan_rendering() does.
+/// @throws DataError as plan_rendering()
+RenderPlan plan_rays(Scene const& scene, RenderPlan const& stepped);
+
 /// Chooses integration step, method and number of rays of a scene where its setup leaves them open. For "auto" it
 /// selects the fast renderer if that supports the scene (build_focused_dots()), with the number of rays and the
 /// fineness by which its deflection table meets the accuracy goals, or comes closest. Otherwise the general renderer

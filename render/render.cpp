@@ -134,7 +134,7 @@ Rendering Device::render_focused(Scene const& scene, RenderPlan const& plan, Dot
   }
   if (all.left.empty()) return all;
   if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
-  double const sign = scene.setup.target.polarity == Polarity::dark ? -1 : 1;
+  double const sign = plan.polarity == Polarity::dark ? -1 : 1;
   merge(all, render_others(scene, plan, select_dots(sources, all.left), images, theory), all.left, sign);
   if (images == RenderImages::in_place) all.store_light_in_place();
   return all;
@@ -142,7 +142,7 @@ Rendering Device::render_focused(Scene const& scene, RenderPlan const& plan, Dot
 
 Rendering Device::render_others(Scene const& scene, RenderPlan plan, DotPattern const& dots, RenderImages images,
                                 RenderTheory theory) {
-  if (!scene.setup.render.rays_per_dot) {
+  if (!plan.given_rays) {
     if (images == RenderImages::no) {
       plan.adaptive_criteria = AdaptiveRayCriteria{};  // criteria for the truth alone, without images
     } else if (!plan.adaptive_criteria) {
@@ -150,9 +150,8 @@ Rendering Device::render_others(Scene const& scene, RenderPlan plan, DotPattern 
     }
     plan.rays = max_rays_per_source(scene, plan);
   }
-  Scene bright = scene;
-  bright.setup.target.polarity = Polarity::bright;
-  return rays_->render(bright, plan, dots, images == RenderImages::no ? images : RenderImages::yes, theory);
+  plan.polarity = Polarity::bright;
+  return rays_->render(scene, plan, dots, images == RenderImages::no ? images : RenderImages::yes, theory);
 }
 
 Device cpu() { return {std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()}; }

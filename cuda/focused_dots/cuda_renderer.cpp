@@ -167,7 +167,7 @@ Rendering CudaRenderer::render(Scene const& scene, RenderPlan const& plan, DotPa
   });
   rendering.table = uploads_->deflections.state();
   rendering.pupil_margin = plan.pupil_margin;
-  if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(render_white_light(scene));
+  if (light && plan.polarity == Polarity::dark) light->take_from(render_white_light(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::in_place) rendering.in_place = std::move(light);
   return rendering;

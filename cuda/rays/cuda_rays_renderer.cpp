@@ -380,7 +380,7 @@ Rendering CudaRaysRenderer::render(Scene const& scene, RenderPlan const& plan, D
   if (!lit) return pass.finish();
   auto light = std::make_shared<DeviceLight>(camera.columns, camera.rows);
   frames->to_light(*light);
-  if (scene.setup.target.polarity == Polarity::dark) light->take_from(render_white_target(scene));
+  if (plan.polarity == Polarity::dark) light->take_from(render_white_target(scene, plan.seed));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::in_place) rendering.in_place = std::move(light);
   return pass.finish();

@@ -7,6 +7,7 @@
 #include "python/src/arrays.h"
 #include "python/src/call.h"
 #include "python/src/case.h"
+#include "render/scene/experiment.h"
 #include "studies/case/cameras.h"
 
 namespace gladstone::python {
@@ -66,7 +67,7 @@ void bind_case(nb::module_& module) {
           nb::arg("folder"))
       .def_prop_ro("camera", &PairCase::camera)
       .def_prop_ro("folder", &PairCase::folder)
-      .def_prop_ro("is_piv", [](PairCase const& self) { return self.loaded().setup.piv.has_value(); })
+      .def_prop_ro("is_piv", [](PairCase const& self) { return &self.loaded().setup.experiment() == &piv_experiment; })
       .def("images",
            [](nb::handle_t<PairCase> self) {
              auto& held = nb::cast<PairCase&>(self);

@@ -40,8 +40,8 @@ PairCase::PairCase(CameraCase camera, Backend const& device, ReusableParts const
 PairCase::PairCase(std::string folder)
     : loaded_(load_case_setup(in_case(folder, case_file::setup), {})), folder_(std::move(folder)) {
   stored_truth_ = read_truth(in_case(folder_, case_file::truth));
-  FramePair<std::uint16_t> const levels{grey_levels(read_image(in_case(folder_, case_file::reference))),
-                                        grey_levels(read_image(in_case(folder_, case_file::flow)))};
+  FramePair<std::uint16_t> const levels{integer_levels(read_levels(in_case(folder_, case_file::reference))),
+                                        integer_levels(read_levels(in_case(folder_, case_file::flow)))};
   outcome_.reference_sha256 = pixel_sha256(levels.reference);
   outcome_.flow_sha256 = pixel_sha256(levels.flow);
   outcome_.accuracy = truth_accuracy(stored_truth_, truth_tolerance_px);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <utility>
 
 #include "render/base/image.h"
@@ -12,6 +13,9 @@ struct FramePair {
   Image<Pixel> reference, flow;
 };
 
+/// Converts grey levels, which are whole numbers from 0 to 65535, to integers.
+Image<std::uint16_t> integer_levels(Image<double> const& levels);
+
 /// Grey levels of a pair of frames in host or device memory, as real numbers: the input of a correlator.
 class StoredFrames {
  public:
@@ -21,6 +25,9 @@ class StoredFrames {
   virtual Image<double> const& reference() const = 0;
   /// Returns frame B in host memory, under the same conditions as reference().
   virtual Image<double> const& flow() const = 0;
+  /// Returns both frames as integers in host memory, under the same conditions as reference().
+  /// @pre all grey levels are whole numbers from 0 to 65535, as a camera records them
+  virtual FramePair<std::uint16_t> integers() const;
 };
 
 /// Grey levels in host memory.

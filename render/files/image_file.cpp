@@ -11,9 +11,11 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "render/base/error.h"
+#include "render/base/frame_pair.h"
 #include "render/base/interrupt.h"
 #include "render/base/version.h"
 #include "render/files/image_codecs.h"
@@ -38,10 +40,12 @@ std::unique_ptr<PageReader> open_by_codecs(std::string const& path) {
   }
 }
 
-/// Reads the current page of a file.
-Image<double> read_current_page(PageReader& input, InputFile const& file, ImageMetadata* metadata) {
+/// Reads the current page of a file by read_grey_levels() or read_stored_levels().
+template <class Levels>
+Levels read_current_page(PageReader& input, InputFile const& file, ImageMetadata* metadata,
+                         Levels (*read)(PageReader&, std::string const&, std::uint64_t)) {
   PageHeader const spec = input.header();
-  Image<double> image = read_grey_levels(input, file.path(), file.size());
+  Levels image = read(input, file.path(), file.size());
   if (metadata) {
     *metadata = metadata_of(spec);
     metadata->channels = spec.colours == Colours::inks ? spec.channels - 1 : spec.channels;
@@ -87,7 +91,21 @@ class Picture {
 
   Image<double> read(std::size_t page, ImageMetadata* metadata) {
     if (!input_->seek(pages_[page].index)) report_damaged_page(path_, page);
-    return read_current_page(*input_, file_, metadata);
+    return read_current_page(*input_, file_, metadata, read_grey_levels);
+  }
+  /// Reads the only page. @param read  read_grey_levels or read_stored_levels
+  template <class Levels>
+  Levels read_only_page(ImageMetadata* metadata, Levels (*read)(PageReader&, std::string const&, std::uint64_t)) {
+    if (pages() > 1) {
+      throw DataError(
+          ErrorCode::wrong_shape, path_,
+          fmt::format(
+              "has {} pages, but a single image is needed; write the intended page to a separate file (a file of two "
+              "frames, reference and flow, is passed as the only input: gladstone correlate PAIR.tif -o vectors.csv)",
+              pages()));
+    }
+    if (!input_->seek(pages_[0].index)) report_damaged_page(path_, 0);
+    return read_current_page(*input_, file_, metadata, read);
   }
 
  private:
@@ -161,18 +179,16 @@ std::string compressed(std::string const& bytes) {
 }  // namespace
 
 Image<double> read_image(std::string const& path, ImageMetadata* metadata) {
-  return named(path, [&] {
-    Picture picture(path);
-    if (picture.pages() > 1) {
-      throw DataError(
-          ErrorCode::wrong_shape, path,
-          fmt::format(
-              "has {} pages, but a single image is needed; write the intended page to a separate file (a file of two "
-              "frames, reference and flow, is passed as the only input: gladstone correlate PAIR.tif -o vectors.csv)",
-              picture.pages()));
-    }
-    return picture.read(0, metadata);
-  });
+  return named(path, [&] { return Picture(path).read_only_page(metadata, read_grey_levels); });
+}
+
+StoredLevels read_levels(std::string const& path, ImageMetadata* metadata) {
+  return named(path, [&] { return Picture(path).read_only_page(metadata, read_stored_levels); });
+}
+
+Image<std::uint16_t> integer_levels(StoredLevels levels) {
+  if (auto* const integers = std::get_if<Image<std::uint16_t>>(&levels)) return std::move(*integers);
+  return integer_levels(std::get<Image<double>>(levels));
 }
 
 std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetadata* metadata) {
@@ -223,7 +239,7 @@ Image<double> ImagePages::read(std::size_t page, ImageMetadata* metadata) const 
     std::unique_ptr<PageReader> const input =
         is_tiff ? open_tiff_page(file, location.directory) : open_by_codecs(path_);
     if (!input || !input->seek(is_tiff ? 0 : location.index)) report_damaged_page(path_, page);
-    return read_current_page(*input, file, metadata);
+    return read_current_page(*input, file, metadata, read_grey_levels);
   });
 }
 

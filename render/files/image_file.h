@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <variant>
 
 #include "render/base/image.h"
 
@@ -26,6 +27,17 @@ struct ImageMetadata {
 /// - TIFFs whose zero is white (WhiteIsZero) are inverted, so that white is the larger value.
 /// @throws DataError, also if the file has several pages, or channels that are neither grey levels nor colours
 Image<double> read_image(std::string const& path, ImageMetadata* metadata = nullptr);
+
+/// Grey levels as an image file stores them: integers of up to 16 bits, or real numbers where samples are of another
+/// type, or colours.
+using StoredLevels = std::variant<Image<std::uint16_t>, Image<double>>;
+
+/// Reads an image as read_image() does, without converting integers of 8 or 16 bits to real numbers.
+StoredLevels read_levels(std::string const& path, ImageMetadata* metadata = nullptr);
+
+/// Returns grey levels as integers; converts those that are stored otherwise.
+/// @pre all grey levels are whole numbers from 0 to 65535
+Image<std::uint16_t> integer_levels(StoredLevels levels);
 
 /// Reads a file of two pages, as written by PIV cameras: frame A and frame B. Pages smaller than the first in both
 /// directions are previews, which are ignored.

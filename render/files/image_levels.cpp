@@ -96,13 +96,12 @@ double grey_level(PageHeader const& spec, double const* sample) {
   return level;
 }
 
-/// Reads the grey levels of a page, in its orientation. Readers scale 10, 12 and other bit depths up to 8 or 16 bits;
-/// `shift` [bits] undoes this.
+/// Reads all samples of a page, in its orientation.
 template <class Stored>
-Image<double> read_levels(PageReader& input, PageHeader const& spec, std::string const& path, int shift) {
-  auto const channels = static_cast<std::size_t>(spec.channels);
-  Image<double> image(spec.width, spec.height);
-  auto const samples = std::make_unique_for_overwrite<Stored[]>(image.size() * channels);
+std::unique_ptr<Stored[]> read_samples(PageReader& input, PageHeader const& spec, std::string const& path) {
+  std::size_t const count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
+                            static_cast<std::size_t>(spec.channels);
+  auto samples = std::make_unique_for_overwrite<Stored[]>(count);
   if (std::string const why = input.read(samples.get()); !why.empty()) {
     throw DataError(ErrorCode::damaged, path,
                     fmt::format("cannot be read to its end (it is damaged, cut short or compressed by an unknown "
@@ -110,6 +109,34 @@ Image<double> read_levels(PageReader& input, PageHeader const& spec, std::string
                                 why));
   }
   throw_if_interrupted();
+  return samples;
+}
+
+/// Returns the number of bits by which the reader has shifted the samples: it scales 10, 12 and other bit depths up to
+/// 8 or 16 bits.
+int scaled_bits(PageHeader const& spec) {
+  int const held = static_cast<int>(8 * spec.sample_bytes);
+  return spec.bits > 0 && spec.bits < held ? held - spec.bits : 0;
+}
+
+/// Reads a page of one unsigned integer per pixel.
+template <class Stored>
+Image<std::uint16_t> read_integers(PageReader& input, PageHeader const& spec, std::string const& path) {
+  int const shift = scaled_bits(spec);
+  Image<std::uint16_t> image(spec.width, spec.height);
+  auto const samples = read_samples<Stored>(input, spec, path);
+  std::transform(samples.get(), samples.get() + image.size(), image.data(),
+                 [shift](Stored sample) { return static_cast<std::uint16_t>(sample >> shift); });
+  return image;
+}
+
+/// Reads the grey levels of a page, in its orientation.
+/// @param shift  see scaled_bits()
+template <class Stored>
+Image<double> read_levels(PageReader& input, PageHeader const& spec, std::string const& path, int shift) {
+  auto const channels = static_cast<std::size_t>(spec.channels);
+  Image<double> image(spec.width, spec.height);
+  auto const samples = read_samples<Stored>(input, spec, path);
   double const scale = shift > 0 ? 1.0 / static_cast<double>(1 << shift) : 1.0;
   auto const value_of = [&](Stored sample) {
     return shift > 0 ? std::floor(static_cast<double>(sample) * scale) : static_cast<double>(sample);
@@ -128,8 +155,7 @@ Image<double> read_levels(PageReader& input, PageHeader const& spec, std::string
 
 Image<double> read_levels(PageReader& input, std::string const& path) {
   PageHeader const spec = input.header();
-  int const held = static_cast<int>(8 * spec.sample_bytes);
-  int const shift = spec.bits > 0 && spec.bits < held ? held - spec.bits : 0;
+  int const shift = scaled_bits(spec);
   switch (spec.type) {
     case SampleType::uint8:
       return read_levels<std::uint8_t>(input, spec, path, shift);
@@ -156,14 +182,15 @@ Image<double> read_levels(PageReader& input, std::string const& path) {
 /// Corrects the orientation of an image. TIFF 6.0, section 8: stored row 0 is the visual top (1, 2), bottom (3, 4),
 /// left (5, 8) or right side (6, 7); stored column 0 is the left (1, 4), right (2, 3), top (5, 6) or bottom side (7,
 /// 8).
-Image<double> turn_upright(Image<double> stored, int orientation) {
+template <class Pixel>
+Image<Pixel> turn_upright(Image<Pixel> stored, int orientation) {
   if (orientation <= 1 || orientation > 8) return stored;
   bool const transposed = orientation >= 5;
   bool const from_right = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
   bool const from_bottom = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
   int const columns = transposed ? stored.rows() : stored.columns();
   int const rows = transposed ? stored.columns() : stored.rows();
-  Image<double> upright(columns, rows);
+  Image<Pixel> upright(columns, rows);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       int const x = from_right ? columns - 1 - column : column, y = from_bottom ? rows - 1 - row : row;
@@ -180,6 +207,18 @@ Image<double> read_grey_levels(PageReader& input, std::string const& path, std::
   check_size(spec, path, file_bytes);
   check_channels(spec, path);
   return turn_upright(read_levels(input, path), spec.orientation);
+}
+
+StoredLevels read_stored_levels(PageReader& input, std::string const& path, std::uint64_t file_bytes) {
+  PageHeader const spec = input.header();
+  bool const of_bytes = spec.type == SampleType::uint8;
+  if (spec.channels != 1 || !(of_bytes || spec.type == SampleType::uint16)) {
+    return read_grey_levels(input, path, file_bytes);
+  }
+  check_size(spec, path, file_bytes);
+  return turn_upright(
+      of_bytes ? read_integers<std::uint8_t>(input, spec, path) : read_integers<std::uint16_t>(input, spec, path),
+      spec.orientation);
 }
 
 }  // namespace gladstone::inline files

@@ -82,16 +82,16 @@ std::string pixel_sha256(Image<double> const& picture, int sample_bits) {
   return hash.finish();
 }
 
-std::string pixel_sha256(Image<std::uint16_t> const& picture) {
-  Sha256 hash = started_picture(picture.columns(), picture.rows(), 16, "uint16");
+std::string pixel_sha256(Image<std::uint16_t> const& picture, int sample_bits) {
+  Sha256 hash = started_picture(picture.columns(), picture.rows(), sample_bits, "uint16");
   hash.add(picture.data(), picture.size() * sizeof(std::uint16_t));
   return hash.finish();
 }
 
 std::string pixel_sha256(std::string const& path) {
   ImageMetadata metadata;
-  Image<double> const picture = read_image(path, &metadata);
-  return pixel_sha256(picture, metadata.sample_bits);
+  StoredLevels const levels = read_levels(path, &metadata);
+  return std::visit([&](auto const& picture) { return pixel_sha256(picture, metadata.sample_bits); }, levels);
 }
 
 std::string dataset_sha256(std::string const& path) {

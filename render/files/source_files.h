@@ -13,8 +13,8 @@ namespace gladstone::inline files {
 /// 65535, they are hashed as little-endian 16-bit integers, row by row, else as 64-bit floats.
 /// @param sample_bits  bits per sample in the file, as ImageMetadata::sample_bits
 std::string pixel_sha256(Image<double> const& picture, int sample_bits);
-/// Computes the hash of an image as read back from a file of write_tiff().
-std::string pixel_sha256(Image<std::uint16_t> const& picture);
+/// Computes the same hash of grey levels that are stored as integers, by default as in a file of write_tiff().
+std::string pixel_sha256(Image<std::uint16_t> const& picture, int sample_bits = 16);
 /// Computes the hash of an image file. @throws DataError
 std::string pixel_sha256(std::string const& path);
 

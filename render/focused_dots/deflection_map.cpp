@@ -145,7 +145,7 @@ DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern
   // Part of the mid-plane that the sources' cones cross, limited to where rays to the whole pupil cross the medium's
   // full depth.
   Vec2d low = sources.centre.front(), high = low;
-  for (DotPattern const* const pattern : {&sources, &scene.dots}) {
+  for (DotPattern const* const pattern : {&sources, &dots.dots()}) {
     for (Vec2d const c : pattern->centre) {
       low = {std::min(low.x, c.x), std::min(low.y, c.y)};
       high = {std::max(high.x, c.x), std::max(high.y, c.y)};
@@ -153,7 +153,7 @@ DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern
   }
   NodeDensity const density = choose_node_density(scene, crossed_extent(scene.setup, way), dots.plan().fineness);
   double const spacing_of_slopes = density.coarseness * density.spacing;
-  double const reach = cone_reach(way, std::max(sources.half_size, scene.dots.half_size), stop) +
+  double const reach = cone_reach(way, std::max(sources.half_size, dots.dots().half_size), stop) +
                        way * largest_aim_distance + 3 * spacing_of_slopes;
   low = (1 - way) * low - Vec2d{reach, reach};
   high = (1 - way) * high + Vec2d{reach, reach};

@@ -15,7 +15,7 @@ namespace gladstone::inline focused_dots {
 TableState table_state(Scene const& scene);
 
 /// Lattices of a scene's deflection table. Nodes are at multiples of a spacing that depends on field, view and light
-/// cone only. The lattices cover the cones of the scene's own dots and of the given sources, as far as they are within
+/// cone only. The lattices cover the cones of FocusedDots::dots() and of the given sources, as far as they are within
 /// the medium.
 struct DeflectionTableLayout {
   /// Default for the largest distance of an aim point from the pupil's centre that the table covers, in radii of the

@@ -7,6 +7,12 @@
 
 namespace gladstone::inline focused_dots {
 
+FocusedDots FocusedDots::with_dots(DotPattern const& dots) const {
+  FocusedDots other = *this;
+  other.dots_ = &dots;
+  return other;
+}
+
 FocusedSetupView FocusedDots::bench() const {
   Setup const& setup = scene_->setup;
   return {-setup.z_d,

@@ -13,20 +13,25 @@ namespace gladstone::inline focused_dots {
 /// perpendicular to the axis, with a Gaussian PSF. Only then is the reference image known in closed form and a single
 /// deflection table valid for all dots (DotModel).
 /// Required as an argument by renderer and tables; created by build_focused_dots() only. Refers to the scene, which
-/// must outlive it, and to later changes of the scene's step and ray budget.
+/// must outlive it.
 class FocusedDots {
  public:
   Scene const& scene() const { return *scene_; }
   RenderPlan const& plan() const { return plan_; }
+  /// Dots that every deflection table covers: those of the scene, unless they are replaced.
+  DotPattern const& dots() const { return *dots_; }
+  /// Returns the same with other dots of the same size, which must outlive it.
+  FocusedDots with_dots(DotPattern const& dots) const;
   FocusedSetupView bench() const;
   /// Parameters of small-angle theory (Eq. 9).
   TheoryModel theory_model() const;
 
  private:
-  FocusedDots(Scene const& scene, RenderPlan const& plan) : scene_(&scene), plan_(plan) {}
+  FocusedDots(Scene const& scene, RenderPlan const& plan) : scene_(&scene), dots_(&scene.dots), plan_(plan) {}
   friend std::optional<FocusedDots> build_focused_dots(Scene const& scene, RenderPlan const& plan);
 
   Scene const* scene_;
+  DotPattern const* dots_;
   RenderPlan plan_;
 };
 

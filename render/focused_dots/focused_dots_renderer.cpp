@@ -53,8 +53,8 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
 }
 
 /// Subtracts the light of the dots from that of a white target if the dots are dark.
-void apply_polarity(Scene const& scene, FramePair<double>& light) {
-  if (scene.setup.target.polarity != Polarity::dark) return;
+void apply_polarity(Scene const& scene, Polarity polarity, FramePair<double>& light) {
+  if (polarity != Polarity::dark) return;
   Image<double> const white = render_white_light(scene);
   for (Image<double>* frame : {&light.reference, &light.flow}) {
     std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
@@ -75,7 +75,7 @@ Rendering FocusedDotsRenderer::render(Scene const& scene, RenderPlan const& plan
   });
   rendering.table = deflections_.state();
   rendering.pupil_margin = plan.pupil_margin;
-  if (images != RenderImages::no) apply_polarity(scene, rendering.light);
+  if (images != RenderImages::no) apply_polarity(scene, plan.polarity, rendering.light);
   if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
 }

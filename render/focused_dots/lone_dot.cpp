@@ -9,26 +9,28 @@
 namespace gladstone::inline focused_dots {
 namespace {
 
-/// Returns a scene with a single white dot.
-Scene alone(Scene const& scene, Vec2d place) {
-  Scene copy = scene;
-  copy.dots.centre = {place};
-  copy.dots.radiance.clear();
-  return copy;
+/// Returns a pattern of a single white dot.
+DotPattern select_place(DotPattern const& dots, Vec2d place) {
+  DotPattern one;
+  one.half_size = dots.half_size;
+  one.shape = dots.shape;
+  one.centre = {place};
+  return one;
 }
 
 }  // namespace
 
-LoneDot::LoneDot(FocusedDots const& all, Vec2d place, int side) : scene_(alone(all.scene(), place)), side_(side) {
-  FocusedDots const dots = build_focused_dots(scene_, all.plan()).value();
-  Vec2d const centre = scene_.dots.centre[0];
-  double room = DeflectionTableLayout::default_aim_distance * scene_.imaging.entrance_pupil / 2;
+LoneDot::LoneDot(FocusedDots const& all, Vec2d place, int side)
+    : dot_(select_place(all.dots(), place)), dots_(all.with_dots(dot_)), side_(side) {
+  Scene const& scene = dots_.scene();
+  Vec2d const centre = dot_.centre[0];
+  double room = DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2;
   do {
-    table_ = std::make_unique<DeflectionMap>(dots, DeflectionTableLayout(dots, scene_.dots, room));
-    owned_ = std::make_unique<OwnedDotModel>(dots, scene_.dots, table_->table(), true);
+    table_ = std::make_unique<DeflectionMap>(dots_, DeflectionTableLayout(dots_, dot_, room));
+    owned_ = std::make_unique<OwnedDotModel>(dots_, dot_, table_->table(), true);
     aim_ = aim_dot(owned_->model, centre);
     room *= 2;
-  } while (aim_.kind == DotKind::left && 2 * aim_.farthest > room && room < scene_.setup.z_b());
+  } while (aim_.kind == DotKind::left && 2 * aim_.farthest > room && room < scene.setup.z_b());
   render_frame(0, {});
   if (is_uncovered()) return;
   Vec2d const moved = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
@@ -42,7 +44,7 @@ LoneDot::LoneDot(FocusedDots const& all, Vec2d place, int side) : scene_(alone(a
 void LoneDot::compare_with_rays(int rays) {
   for (std::size_t scrambling = 0; scrambling < samples_.size(); ++scrambling) {
     RaySample& sample = samples_[scrambling];
-    std::visit([&](auto const& medium) { add_rays(medium, scrambling, rays, sample); }, scene_.medium.view);
+    std::visit([&](auto const& medium) { add_rays(medium, scrambling, rays, sample); }, dots_.scene().medium.view);
     Difference& difference = difference_[scrambling];
     Vec2d const rendered = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
     difference.displacement = sample.predicted.mean() + sample.traced.mean() - sample.also_predicted.mean() - rendered;
@@ -56,11 +58,11 @@ void LoneDot::compare_with_rays(int rays) {
 }
 
 void LoneDot::render_frame(std::size_t frame, Vec2d moved) {
-  Vec2d const centre = scene_.dots.centre[0], at = owned_->model.to_pixel(centre) + moved;
+  Vec2d const centre = dot_.centre[0], at = owned_->model.to_pixel(centre) + moved;
   int const half = side_ / 2;
   owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - half, std::floor(at.y) - half};
   integrator_ = std::make_unique<DotIntegrator>(owned_->model);
-  std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, 1); }, scene_.medium.view);
+  std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, 1); }, dots_.scene().medium.view);
   if (is_uncovered()) return;
   LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
   LightImage* const images[frame_count] = {&frames[0], &frames[1]};
@@ -78,7 +80,7 @@ void LoneDot::add_rays(Medium const& medium, std::size_t scrambling, int rays, R
   spot.gaussian = model.spot;
   LightPatch patch(spot);
   BundleView choice;
-  choice.seed = repeat_seed(scene_.setup.render.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
+  choice.seed = repeat_seed(dots_.plan().seed, 1000003u + static_cast<std::uint64_t>(scrambling));
   constexpr double wide = CorrectedCone::reach;
   auto const enter = [&](Vec2d on_dot, Vec2d moved, Vec2d arrival, double sign, LightImage& image,
                          RaySample::Sum& sum) {

@@ -38,11 +38,14 @@ struct RaySample {
 /// samples of traced rays.
 class LoneDot {
  public:
+  LoneDot(LoneDot const&) = delete;  // dots_ points to dot_
+  LoneDot& operator=(LoneDot const&) = delete;
+
   static constexpr int sample_count = 4;        ///< number of independent samples of rays
   static constexpr int largest_sample = 65536;  ///< maximum number of rays per sample whose landing the table predicts
   static constexpr int predicted_per_traced = 8;  ///< number of predicted rays per traced ray
 
-  /// @param all    scene and plan; its dots are replaced
+  /// @param all    scene and plan, which must outlive this; its dots are replaced
   /// @param place  position on the target [m]
   /// @param side   side of the windows [px]
   LoneDot(FocusedDots const& all, Vec2d place, int side);
@@ -65,7 +68,8 @@ class LoneDot {
   template <class Medium>
   void add_rays(Medium const& medium, std::size_t scrambling, int rays, RaySample& sample);
 
-  Scene scene_;
+  DotPattern dot_;                  ///< the dot, alone
+  FocusedDots dots_;                ///< scene and plan of all dots, with this one in place of the others
   int side_;                        ///< side of the pixel windows [px]
   std::vector<RaySample> samples_;  ///< independent samples of rays; none for a dot that the medium does not move
   std::unique_ptr<DeflectionMap> table_;

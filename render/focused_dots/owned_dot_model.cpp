@@ -121,11 +121,11 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   model.cone.smoothing = Scene::stop_edge(model.cone.scattered_count);
   model.places = make_place_rule(sources.half_size > 0, sources.shape);
 
-  bool const given = scene.setup.render.rays_per_dot.has_value();
+  bool const given = plan.given_rays.has_value();
   std::uint64_t const asked = std::min(plan.rays, most_given_rays);
   // round up to whole warps
   std::uint64_t const wanted = given ? asked : (std::max<std::uint64_t>(asked, 1) + 31) / 32 * 32;
-  model.choice.seed = scene.setup.render.seed;
+  model.choice.seed = plan.seed;
   model.choice.scrambling_bits = scrambling_bits(wanted);
   model.shape = sources.shape;
   model.fewest_rays = static_cast<int>(wanted);

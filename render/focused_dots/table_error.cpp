@@ -198,8 +198,8 @@ double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
 
 RenderPlan plan_rays_by_table(FocusedDots const& dots) {
   RenderPlan plan = dots.plan();
-  if (auto const given = dots.scene().setup.render.rays_per_dot) {
-    plan.rays = *given;
+  if (plan.given_rays) {
+    plan.rays = *plan.given_rays;
     return plan;
   }
   auto const measure = [&] { return measure_table_error(build_focused_dots(dots.scene(), plan).value()); };

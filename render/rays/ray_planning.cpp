@@ -14,6 +14,7 @@
 #include "render/base/units.h"
 #include "render/rays/particle_tracer.h"
 #include "render/rays/sample_images.h"
+#include "render/scene/source_sample.h"
 #include "render/scene/spot.h"
 #include "render/scene/trace_ray.h"
 
@@ -163,13 +164,13 @@ AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene, RenderPlan c
   RenderPlan metered = plan;
   metered.adaptive_criteria.reset();
   metered.rays = 64;  // accuracy of a few percent for the brightest pixel and thus for a grey level
-  criteria.level = brightest_pixel(render_sample(scene, metered)) / criteria.brightest_at;
+  criteria.level = brightest_pixel(render_sample(scene, metered, all_sources(scene))) / criteria.brightest_at;
   return criteria;
 }
 
 RenderPlan plan_rays_by_tracing(Scene const& scene, RenderPlan plan) {
-  if (auto const given = scene.setup.render.rays_per_dot) {
-    plan.rays = *given;
+  if (plan.given_rays) {
+    plan.rays = *plan.given_rays;
     return plan;
   }
   bool const one_path = scene.chief_rays_only() && scene.dots.half_size == 0;

@@ -56,7 +56,7 @@ RaysLaunch::RaysLaunch(Scene const& scene, RenderPlan const& plan, SpotView cons
       spot(shown),
       z_b(scene.setup.z_b()),
       ordered(order == RayOrder::neighbours && scene.medium.grid.nodes[0] > 1) {
-  choice.seed = scene.setup.render.seed;
+  choice.seed = plan.seed;
   choice.sampling = scene.setup.render.sampling;
   set_rays(plan.rays);
   if (rim == StopRim::smooth && !camera.chief_rays_only()) {

@@ -75,8 +75,8 @@ void finish_rays(IdealView const& view, Ray<double> (&ray)[N], RayAccount<double
 }
 
 /// Subtracts the light of bright dots from a white target.
-void take_from_white(Scene const& scene, FramePair<double>& light) {
-  Image<double> const white = render_white_target(scene);
+void take_from_white(Scene const& scene, std::uint64_t seed, FramePair<double>& light) {
+  Image<double> const white = render_white_target(scene, seed);
   for (Image<double>* frame : {&light.reference, &light.flow}) {
     std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
                    [](double paper, double dots) { return paper - dots; });
@@ -95,8 +95,8 @@ Rendering RaysRenderer::render(Scene const& scene, RenderPlan const& plan, DotPa
       },
       scene.medium.view);
   rendering.table = TableState::by_rays;
-  if (images != RenderImages::no && scene.setup.target.polarity == Polarity::dark) {
-    take_from_white(scene, rendering.light);
+  if (images != RenderImages::no && plan.polarity == Polarity::dark) {
+    take_from_white(scene, plan.seed, rendering.light);
   }
   if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
@@ -128,10 +128,11 @@ std::vector<Vec2d> ideal_displacements(Scene const& scene, RenderPlan const& pla
   return displacement;
 }
 
-Image<double> render_white_target(Scene const& scene) {
+Image<double> render_white_target(Scene const& scene, std::uint64_t seed) {
   constexpr int nodes = 17;
   RenderPlan plan;
   plan.rays = 4096;
+  plan.seed = seed;
   RaysLaunch const launch(scene, plan, SpotView{});
   CameraView<double> const camera = launch.camera.view();
   Vec2d const centre{};

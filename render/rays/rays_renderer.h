@@ -23,6 +23,7 @@ class RaysRenderer : public Renderer {
 std::vector<Vec2d> ideal_displacements(Scene const& scene, RenderPlan const& plan, DotPattern const& sources);
 
 /// Renders a white target: light per pixel, from which dark dots are subtracted.
-Image<double> render_white_target(Scene const& scene);
+/// @param seed  seed of the rays' random numbers
+Image<double> render_white_target(Scene const& scene, std::uint64_t seed);
 
 }  // namespace gladstone::inline rays

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "render/base/parallel.h"
@@ -65,8 +64,10 @@ double mean_square(Image<double> const& one, Image<double> const& other, double 
 
 }  // namespace
 
-SampleImages render_sample(Scene scene, RenderPlan const& plan, SampleRays rays) {
-  std::vector<std::size_t> const in_view = sources_in_view(scene), some = choose_sample(in_view, sample_sources);
+SampleImages render_sample(Scene const& scene, RenderPlan const& plan, std::vector<std::size_t> const& sources,
+                           SampleRays rays) {
+  std::vector<std::size_t> const in_view = sources_in_view(scene, sources),
+                                 some = choose_sample(in_view, sample_sources);
   SampleImages sample;
   if (some.empty()) return {{Image<double>(1, 1), Image<double>(1, 1)}};
   sample.share = static_cast<double>(in_view.size()) / static_cast<double>(some.size());
@@ -74,9 +75,10 @@ SampleImages render_sample(Scene scene, RenderPlan const& plan, SampleRays rays)
     sample.next_rule = render_particles(scene, plan, some, rays, sample.light);
     return sample;
   }
-  scene.dots = select_dots(scene.dots, some);
-  scene.setup.target.polarity = Polarity::bright;
-  sample.light = RaysRenderer().render(scene, plan, scene.dots, RenderImages::yes, RenderTheory::no).light;
+  RenderPlan bright = plan;
+  bright.polarity = Polarity::bright;
+  sample.light =
+      RaysRenderer().render(scene, bright, select_dots(scene.dots, some), RenderImages::yes, RenderTheory::no).light;
   return sample;
 }
 
@@ -96,16 +98,17 @@ double brightest_pixel(SampleImages const& sample) {
   return brightest;
 }
 
-double measure_image_error(Scene const& scene, RenderPlan const& plan, double level) {
+double measure_image_error(Scene const& scene, RenderPlan const& plan, double level,
+                           std::vector<std::size_t> const& sources) {
   if (scene.second_medium) {
-    return std::fmax(measure_image_error(select_first_pulse(scene), plan, level),
-                     measure_image_error(select_second_pulse(scene), plan, level));
+    return std::fmax(measure_image_error(select_first_pulse(scene), plan, level, sources),
+                     measure_image_error(select_second_pulse(scene), plan, level, sources));
   }
-  Scene one = scene, other = scene;
-  one.setup.render.seed = repeat_seed(scene.setup.render.seed, 1000003u);
-  other.setup.render.seed = repeat_seed(scene.setup.render.seed, 1000004u);
-  SampleImages const a = render_sample(std::move(one), plan),
-                     b = render_sample(std::move(other), plan, SampleRays::next_rule);
+  RenderPlan one = plan, other = plan;
+  one.seed = repeat_seed(plan.seed, 1000003u);
+  other.seed = repeat_seed(plan.seed, 1000004u);
+  SampleImages const a = render_sample(scene, one, sources),
+                     b = render_sample(scene, other, sources, SampleRays::next_rule);
   double worse = std::numeric_limits<double>::quiet_NaN();
   for (auto const frame : {&FramePair<double>::reference, &FramePair<double>::flow}) {
     worse = std::fmax(worse, mean_square(a.light.*frame, b.light.*frame, level, a.share));

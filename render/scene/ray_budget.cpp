@@ -17,6 +17,9 @@ constexpr std::uint64_t most_rays = std::uint64_t{1} << 16, always_allowed = 102
 
 RenderPlan with_step(Scene const& scene, IntegrationStep const& step) {
   RenderPlan plan;
+  plan.given_rays = scene.setup.render.rays_per_dot;
+  plan.seed = scene.setup.render.seed;
+  plan.polarity = scene.setup.target.polarity;
   plan.step_estimate = step;
   plan.step = step.step_mm * unit::millimetre;
   plan.pupil_margin = 1.25 * step.largest_shift;

@@ -30,8 +30,8 @@ double theory_ray_seconds(Scene const& scene, RenderPlan const& plan);
 /// Returns the maximum number of rays per source for adaptive ray numbers: a power of two from 1024 to 65,536.
 std::uint64_t max_rays_per_source(Scene const& scene, RenderPlan const& plan);
 
-/// Returns a plan with an integration step and the margin of the pupil that its deflections require, and with one ray
-/// per source.
+/// Returns a plan with an integration step and the margin of the pupil that its deflections require, with the seed, the
+/// polarity and the given number of rays of the scene's setup, and with one ray per source.
 /// @throws DataError if rays are deflected by more than 45 degrees before they reach the lens: no real set-up does so,
 /// and the search for a sufficient margin would not terminate
 RenderPlan with_step(Scene const& scene, IntegrationStep const& step);

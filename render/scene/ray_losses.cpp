@@ -67,7 +67,8 @@ std::vector<std::string> names_of(Scene const& scene) {
 
 RayLosses sample_ray_losses(Scene const& scene, RenderPlan const& plan) {
   std::vector<std::size_t> const sources =
-      scene.source_count() > 0 ? choose_sample(sources_in_view(scene), sampled_sources) : std::vector<std::size_t>{};
+      scene.source_count() > 0 ? choose_sample(sources_in_view(scene, all_sources(scene)), sampled_sources)
+                               : std::vector<std::size_t>{};
   CameraView<double> const camera = scene.camera.view();
   TracingOptions<double> const options{plan.step, scene.setup.medium.ambient_refractivity(),
                                        scene.setup.medium.integrator, scene.setup.medium.faces};

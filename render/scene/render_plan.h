@@ -47,14 +47,18 @@ struct TableError {
   }
 };
 
-/// Numerical parameters of a rendering: renderer, integration step and number of rays. plan_rendering() (planning.h)
-/// chooses those that the setup leaves open.
+/// Parameters of a rendering: renderer, integration step, rays and their random numbers, and polarity. plan_rendering()
+/// (planning.h) takes them from the setup and chooses those that the setup leaves open.
 struct RenderPlan {
   RenderMethod method =
       RenderMethod::automatic;  ///< method of the rendering; automatic: chosen by resolve_render_method()
   double step = 0;              ///< integration step [m]
   double pupil_margin = 0;      ///< margin by which the pupil is enlarged so that no deflected ray is lost [m]
   std::uint64_t rays = 1;       ///< rays of every source; maximum number if adaptive
+  /// Number of rays of every source that the setup or the caller gives; empty: chosen, see `rays`.
+  std::optional<std::uint64_t> given_rays;
+  std::uint64_t seed = 1;                ///< seed of the rays' random numbers
+  Polarity polarity = Polarity::bright;  ///< polarity of the dots in the images
   /// Criteria of adaptive ray numbers (fast renderer: of dots at side faces); empty: all sources have `rays`.
   std::optional<AdaptiveRayCriteria> adaptive_criteria;
   int fineness = 1;               ///< refinement of the fast renderer's table and rules: 1, or 2 for steep fronts

@@ -1,18 +1,11 @@
 #include "render/scene/rendered_light.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "render/base/integer_frames.h"
 
 namespace gladstone::inline scene {
-namespace {
-
-/// Converts a recorded image to the grey levels that correlation reads, identical to those in the image file.
-Image<double> grey_levels(Recording const& recording) {
-  Image<double> levels(recording.image.columns(), recording.image.rows());
-  std::copy(recording.image.begin(), recording.image.end(), levels.begin());
-  return levels;
-}
-
-}  // namespace
 
 double HostLight::brightest() const {
   return std::max(*std::max_element(light_.reference.begin(), light_.reference.end()),
@@ -20,10 +13,10 @@ double HostLight::brightest() const {
 }
 
 RecordedFrames HostLight::record(Detector const& detector) const {
-  Recording const reference = detector.record(light_.reference, RandomStream::noise_reference);
-  Recording const flow = detector.record(light_.flow, RandomStream::noise_flow);
-  return {std::make_shared<HostFrames const>(grey_levels(reference), grey_levels(flow)), reference.saturated,
-          flow.saturated};
+  Recording reference = detector.record(light_.reference, RandomStream::noise_reference);
+  Recording flow = detector.record(light_.flow, RandomStream::noise_flow);
+  FramePair<std::uint16_t> levels{std::move(reference.image), std::move(flow.image)};
+  return {std::make_shared<IntegerFrames const>(std::move(levels)), reference.saturated, flow.saturated};
 }
 
 std::unique_ptr<StoredFrames const> HostLight::ideal(Detector const& detector) const {

@@ -1,13 +1,21 @@
 #include "render/scene/source_sample.h"
 
+#include <numeric>
+
 namespace gladstone::inline scene {
 
-std::vector<std::size_t> sources_in_view(Scene const& scene) {
+std::vector<std::size_t> all_sources(Scene const& scene) {
+  std::vector<std::size_t> all(scene.source_count());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+std::vector<std::size_t> sources_in_view(Scene const& scene, std::vector<std::size_t> const& sources) {
   std::vector<std::size_t> in_view;
-  for (std::size_t source = 0; source < scene.source_count(); ++source) {
+  for (std::size_t const source : sources) {
     if (scene.source_in_view(source)) in_view.push_back(source);
   }
-  if (in_view.empty() && scene.source_count() > 0) in_view.push_back(0);
+  if (in_view.empty() && !sources.empty()) in_view.push_back(sources.front());
   return in_view;
 }
 

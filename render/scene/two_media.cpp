@@ -37,13 +37,14 @@ std::vector<Vec2d> displacements(GroundTruth const& first, GroundTruth const& se
 double standard_error(Renderer& renderer, Scene const& scene, RenderPlan const& plan, Particles const& particles) {
   Particles const some = sample_particles(particles);
   std::array<std::vector<Vec2d>, keys> found;
+  Scene const first = select_first_pulse(scene), second = select_second_pulse(scene);
   for (std::size_t key = 0; key < keys; ++key) {
-    Scene keyed = scene;
-    keyed.setup.render.seed += 7919 * (key + 1);
+    RenderPlan keyed = plan;
+    keyed.seed += 7919 * (key + 1);
     auto const trace = [&](Scene const& one) {
-      return renderer.render_particles(one, plan, some, ParticleLight::equal, RenderImages::no).truth;
+      return renderer.render_particles(one, keyed, some, ParticleLight::equal, RenderImages::no).truth;
     };
-    found[key] = displacements(trace(select_first_pulse(keyed)), trace(select_second_pulse(keyed)));
+    found[key] = displacements(trace(first), trace(second));
   }
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < some.size(); ++i) {

@@ -220,7 +220,6 @@ ReportPage benchmark_page(BenchmarkResult const& result, std::string const& fold
   if (!result.mistakes.empty()) made.blocks.emplace_back(TextList{result.mistakes});
   made.blocks.emplace_back(Paragraph{"gladstone " + build_text() + ", on " + result.device + "."});
   page.sections.push_back(std::move(made));
-  page.data = nlohmann::json::object();
   return page;
 }
 

@@ -41,8 +41,8 @@ void write_case_folder(MadeCase const& made, std::string const& folder) {
   output.fill([&](std::string const& place) {
     auto const in_place = [&](char const* name) { return (fs::path(place) / name).string(); };
     ImageMetadata const metadata{8, 0.0, "gladstone benchmark, " + made.record.of.name + ": " + made.record.of.what};
-    write_tiff(in_place(case_file::reference), grey_levels(made.frames.reference()), metadata);
-    write_tiff(in_place(case_file::flow), grey_levels(made.frames.flow()), metadata);
+    write_tiff(in_place(case_file::reference), integer_levels(made.frames.reference()), metadata);
+    write_tiff(in_place(case_file::flow), integer_levels(made.frames.flow()), metadata);
     if (!made.setup.empty()) OutputFile::write_text(in_place(case_file::setup), made.setup);
     OutputFile::write_text(in_place(benchmark_truth), truth_text(made));
   });
@@ -78,7 +78,7 @@ MadeCase make_case(BenchmarkCase const& one, Backend const& device) {
   } else {
     pair = render_particle_pair(one.particles, one.flow);
   }
-  CaseRecord record{one, pixel_sha256(grey_levels(pair.reference)), pixel_sha256(grey_levels(pair.flow))};
+  CaseRecord record{one, pixel_sha256(integer_levels(pair.reference)), pixel_sha256(integer_levels(pair.flow))};
   HostFrames frames(std::move(pair.reference), std::move(pair.flow));
   return {std::move(record), std::move(frames), std::move(pair), std::move(truth), std::move(setup)};
 }

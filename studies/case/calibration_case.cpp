@@ -42,9 +42,9 @@ DotPositionError place_error(Scene const& scene, RenderPlan const& plan, Rendere
   if (scene.chief_rays_only()) return error;
   DotPattern const some = some_dots(scene);
   auto const places = [&](std::uint64_t repeat) {
-    Scene other = scene;
-    other.setup.render.seed = repeat_seed(scene.setup.render.seed, repeat);
-    return renderer.render(other, plan, some, RenderImages::yes, RenderTheory::no).truth.reference_px;
+    RenderPlan other = plan;
+    other.seed = repeat_seed(plan.seed, repeat);
+    return renderer.render(scene, other, some, RenderImages::yes, RenderTheory::no).truth.reference_px;
   };
   std::vector<Vec2d> const one = places(1), two = places(2);
   double squares = 0;

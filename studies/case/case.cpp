@@ -215,7 +215,9 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   warn(prepared.warnings, scene.medium.warnings);
   if (scene.second_medium) warn(prepared.warnings, scene.second_medium->warnings);
   warn_of_field(scene, prepared.warnings);  // warn before rays are traced through the field
-  RenderPlan const& plan = prepared.plan = known.plan ? *known.plan : plan_rendering(scene, known.step);
+  prepared.plan = known.plan ? *known.plan : plan_rendering(scene, known.step);
+  prepared.plan.seed = loaded.setup.render.seed;  // a repetition reuses the plan of a case with another seed
+  RenderPlan const& plan = prepared.plan;
   if (IntegrationStep const& step = plan.step_estimate; step.change_px >= 1e-4) {
     warn(prepared.warnings,
          {WarningCode::low_accuracy, "medium.step_mm",

@@ -81,16 +81,14 @@ double preview_exposure(Scene const& scene, FramePair<double> const& light) {
 
 CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
   auto const start = std::chrono::steady_clock::now();
-  bool const planes = !loaded.setup.planes.empty();
+  bool const planes = !loaded.setup.experiment().correlated;
   CasePreview preview;
-  Setup setup = loaded.setup;
   if (planes) {
     auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
-    preview.plane_z = *std::min_element(setup.planes.begin(), setup.planes.end(), nearer);
-    setup = plane_setup(setup, preview.plane_z);
+    preview.plane_z = *std::min_element(loaded.setup.planes.begin(), loaded.setup.planes.end(), nearer);
   }
-  if (!setup.render.rays_per_dot) setup.render.rays_per_dot = preview_rays;
-  Scene scene = build_scene(setup);
+  Scene scene = build_scene(planes ? plane_setup(loaded.setup, preview.plane_z) : loaded.setup);
+  Setup const& setup = scene.setup;
   preview.at_gradient = setup.experiment().measures_density && setup.medium.field.kind != FieldKind::none;
   Vec2d const centre = 0.5 * Vec2d{setup.camera.columns - 1.0, setup.camera.rows - 1.0};
   place_preview(preview, setup.camera, centre);
@@ -101,7 +99,9 @@ CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
                     "contains no dot or particle (none is near this part of the image); render the "
                     "complete images, or check the target or the particles");
   }
-  RenderPlan const plan = plan_rendering(scene);
+  RenderPlan stepped = plan_step(scene);
+  if (!stepped.given_rays) stepped.given_rays = preview_rays;
+  RenderPlan const plan = plan_rays(scene, stepped);
   Rendering const rendering = render(scene, plan, renderer, RenderImages::yes, RenderTheory::no);
   preview.rays = plan.rays;
   preview.method = rendering.plan.method;

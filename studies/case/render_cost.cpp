@@ -61,7 +61,7 @@ double RenderCost::bytes() const {
 
 RenderCost estimate_render_cost(Setup const& setup) {
   CaseKind const& kind = case_kind(setup);
-  bool const planes = !setup.planes.empty();
+  bool const planes = !setup.experiment().correlated;
   RenderCost cost;
   cost.memory = memory_requirements(setup);
   Scene const scene = cost_scene(planes ? plane_setup(setup, setup.planes.front()) : setup);

@@ -162,7 +162,7 @@ class SequenceRendering {
       if (!sequence_.consecutive && !shared_.cameras[camera].reference.empty()) continue;
       fs::path const earlier = sequence_.consecutive ? case_of(number - 1, camera) / case_file::flow
                                                      : frames_of(camera) / rendered_sequence_file::frame(0);
-      shared_.cameras[camera].reference = read_image(earlier.string());
+      shared_.cameras[camera].reference = integer_levels(read_levels(earlier.string()));
     }
   }
 
@@ -184,7 +184,7 @@ class SequenceRendering {
       medium_ = std::move(rendered.medium);
       shared_.medium = &medium_;
     }
-    Warnings const warnings = pair_warnings(rendered.summary);
+    Warnings const warnings = pair_warnings(*rendered.summary);
     return {{"pair", number},
             {"folder", rendered_sequence_file::pair(number)},
             {"frames", Json::array({first_frame(number), second_frame(number)})},

@@ -37,6 +37,7 @@ void SetupRenderer::refuse_over_inputs(std::string const& folder) const {
 RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folder, SharedParts const& shared) {
   OutputFolder output(folder, case_content());
   RenderedSetup all;
+  nlohmann::ordered_json contents;
   BuiltMedium& medium = all.medium;
   if (shared.medium) medium = *shared.medium;
   for (CameraCase& camera : cameras_) {
@@ -51,18 +52,19 @@ RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folde
         render_one(camera, renderer, known, medium, output, entry,
                    of_camera == shared.cameras.end() ? SharedParts::OfCamera{} : of_camera->second);
     if (cameras_.size() > 1) {
-      all.summary["cameras"][camera.name] = std::move(summary);
+      contents["cameras"][camera.name] = std::move(summary);
     } else {
-      all.summary = std::move(summary);
+      contents = std::move(summary);
     }
   }
   if (cameras_.size() > 1) {
     output.fill([&](std::string const& place) {
       OutputFile::write_text((fs::path(place) / case_file::setup).string(), written());
-      OutputFile::write_text((fs::path(place) / case_file::summary).string(), json_text(all.summary) + "\n");
+      OutputFile::write_text((fs::path(place) / case_file::summary).string(), json_text(contents) + "\n");
     });
   }
   output.commit();
+  all.summary = std::make_shared<nlohmann::ordered_json const>(std::move(contents));
   return all;
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +33,7 @@ struct RenderedCamera {
 struct SharedParts {
   struct OfCamera {
     std::optional<double> exposure_e;          ///< exposure of the first pair [e]; empty: chosen by the setup
-    Image<double> reference;                   ///< grey levels of frame A in other pairs; empty: rendered
+    Image<std::uint16_t> reference;            ///< grey levels of frame A in other pairs; empty: rendered
     std::shared_ptr<ParticleCache> particles;  ///< particles of PIV; null: none
   };
   /// shared parts of each camera by its name, which is empty for the only camera
@@ -43,8 +43,8 @@ struct SharedParts {
 
 /// Result of rendering a setup.
 struct RenderedSetup {
-  BuiltMedium medium;              ///< medium of the case; with several cameras that of the last one
-  nlohmann::ordered_json summary;  ///< contents of summary.json
+  BuiltMedium medium;  ///< medium of the case; with several cameras that of the last one
+  std::shared_ptr<nlohmann::ordered_json const> summary;  ///< contents of summary.json
   std::vector<RenderedCamera> cameras;
 };
 

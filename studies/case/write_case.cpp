@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -84,13 +83,6 @@ RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
   return finished;
 }
 
-Image<std::uint16_t> grey_levels(Image<double> const& levels) {
-  Image<std::uint16_t> image(levels.columns(), levels.rows());
-  std::transform(levels.begin(), levels.end(), image.begin(),
-                 [](double level) { return static_cast<std::uint16_t>(level); });
-  return image;
-}
-
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                        RecordedFrames const& frames, Renderer const& renderer) {
   CaseOutcome outcome;
@@ -120,7 +112,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   if (accuracy.table || prepared.plan.method != resolve_render_method(prepared.scene)) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.plan.method)));
   }
-  outcome.levels = {grey_levels(frames.levels->reference()), grey_levels(frames.levels->flow())};
+  outcome.levels = frames.levels->integers();
   outcome.reference_sha256 = pixel_sha256(outcome.levels.reference);
   outcome.flow_sha256 = pixel_sha256(outcome.levels.flow);
   static_cast<RenderedOutcome&>(outcome) = warn_of_rendering(warnings, prepared, rendered, frames);

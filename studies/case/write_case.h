@@ -79,9 +79,6 @@ struct CaseOutcome : RenderedOutcome {
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                        RecordedFrames const& frames, Renderer const& renderer);
 
-/// Converts grey levels, which are whole numbers, to the integers of an image file.
-Image<std::uint16_t> grey_levels(Image<double> const& levels);
-
 /// Writes the files of a rendered case.
 /// @return the contents of summary.json
 /// @throws DataError if a file that the setup names has changed since it was hashed

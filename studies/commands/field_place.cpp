@@ -55,10 +55,15 @@ Bounds<double> density_region(Setup const& setup, FieldSource const& source, Fie
   return file_bounds(medium);
 }
 
+/// Returns the velocity file of a setup; null if it names none.
+VelocityFile const* find_velocity_file(Setup const& setup) {
+  return setup.piv && setup.piv->flow.file ? &*setup.piv->flow.file : nullptr;
+}
+
 /// Returns the region of a velocity field in the world, with the spacing and centre that the setup gives its flow [m].
 Bounds<double> velocity_region(Setup const& setup, FieldSource const& source, FieldFile const& file) {
   VelocityFile velocity;
-  if (setup.piv && setup.piv->flow.file) velocity = *setup.piv->flow.file;
+  if (VelocityFile const* const given = find_velocity_file(setup)) velocity = *given;
   velocity.file = file.path;
   velocity.dataset = file.dataset;
   velocity.axes = file.axes;
@@ -73,7 +78,8 @@ Bounds<double> velocity_region(Setup const& setup, FieldSource const& source, Fi
 /// Returns true if the setup specifies the spacing of the field's nodes.
 bool is_spaced(Setup const& setup, bool velocity) {
   if (!velocity) return setup.medium.field.kind == FieldKind::file && setup.medium.field.spacing.has_value();
-  return setup.piv && setup.piv->flow.file && setup.piv->flow.file->spacing.has_value();
+  VelocityFile const* const given = find_velocity_file(setup);
+  return given && given->spacing.has_value();
 }
 
 }  // namespace

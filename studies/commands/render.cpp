@@ -176,14 +176,14 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
     RenderedSetup const rendered = rendering.render(*renderer, arguments->output);
     std::string text;
     for (RenderedCamera const& camera : rendered.cameras) text += in_words(camera) + '\n';
-    if (rendered.summary.contains("cameras")) {
-      for (auto const& [name, summary] : rendered.summary["cameras"].items())
+    if (nlohmann::ordered_json const& contents = *rendered.summary; contents.contains("cameras")) {
+      for (auto const& [name, summary] : contents["cameras"].items())
         if (std::string const glasses = name_shared_glasses(summary); !glasses.empty())
           text.append(name).append(": ").append(glasses);
     } else {
-      text += name_shared_glasses(rendered.summary);
+      text += name_shared_glasses(contents);
     }
-    print_result(options, json_text(rendered.summary), text);
+    print_result(options, json_text(*rendered.summary), text);
     return ok;
   };
 }

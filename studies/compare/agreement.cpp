@@ -35,6 +35,19 @@ Agreement jackknife(AgreementSums const& whole, Pieces const& pieces) {
   return {error(square.correlation, mean.correlation), error(square.rms_ratio, mean.rms_ratio)};
 }
 
+/// Builds a scene with a square lattice of dots in place of those of its setup.
+/// @param side   number of dots along each side
+/// @param pitch  distance of the dots [m]
+Scene build_lattice_scene(Setup const& setup, int side, double pitch) {
+  Scene scene = build_scene(setup);
+  scene.dots.centre.clear();
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i)
+      scene.dots.centre.push_back({pitch * (i - 0.5 * (side - 1)), pitch * (j - 0.5 * (side - 1))});
+  }
+  return scene;
+}
+
 }  // namespace
 
 void AgreementSums::add(GroundTruth const& truth, std::size_t i) {
@@ -86,12 +99,7 @@ PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Rend
   for (int row = 0; row < views; ++row) {
     for (int column = 0; column < views; ++column) {
       field.center = {-column * nodes * spacing, -row * nodes * spacing, 0};
-      Scene scene = build_scene(setup);
-      scene.dots.centre.clear();
-      for (int j = 0; j < dots; ++j) {
-        for (int i = 0; i < dots; ++i)
-          scene.dots.centre.push_back({pitch * (i - 0.5 * (dots - 1)), pitch * (j - 0.5 * (dots - 1))});
-      }
+      Scene const scene = build_lattice_scene(setup, dots, pitch);
       RenderPlan plan = plan_step(scene);
       plan.rays = *setup.render.rays_per_dot;
       GroundTruth const truth = render(scene, plan, renderer, RenderImages::no, RenderTheory::yes).truth;

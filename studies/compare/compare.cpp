@@ -99,12 +99,11 @@ GroundTruth truth_at_points(Scene const& scene, RenderPlan const& plan, Renderer
     });
   };
   // Both corrections use few rays, the first with point dots, the second with dots of the target's size.
-  Scene rough = scene;
   RenderPlan few = plan;
-  rough.setup.render.rays_per_dot = few.rays = std::min<std::uint64_t>(plan.rays, 128);
+  few.given_rays = few.rays = std::min<std::uint64_t>(plan.rays, 128);
   for (double const half_size : {0.0, scene.dots.half_size}) {
     virtual_dots.half_size = half_size;
-    correct(renderer.render(rough, few, virtual_dots, RenderImages::no, RenderTheory::no).truth);
+    correct(renderer.render(scene, few, virtual_dots, RenderImages::no, RenderTheory::no).truth);
   }
   return renderer.render(scene, plan, virtual_dots, RenderImages::no, theory).truth;
 }

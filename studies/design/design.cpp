@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "render/base/error.h"
 #include "render/files/output_file.h"
 #include "render/medium/field_volume.h"
+#include "render/scene/experiment.h"
 #include "render/scene/setup_document.h"
 #include "studies/case/case_files.h"
 #include "studies/design/bos_sheet.h"
@@ -49,6 +51,30 @@ AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& doc
   return result;
 }
 
+void add_bos_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
+                   DesignReport& report) {
+  report.given = std::make_unique<FixedDesignParameters>(collect_fixed_parameters(loaded));
+  report.best = make_design_point(loaded.setup, *report.given);
+  report.sheet = bos_sheet(loaded.setup, *report.best);
+  if (uncertain.empty()) return;
+  Backend const device = request.open_device();
+  report.uncertainty =
+      measurement_uncertainty(loaded, uncertain, *report.best, sheet_gradient(*report.given), *device.renderer);
+}
+
+void add_piv_sheet(DesignRequest const& /*request*/, CaseSetup const& loaded,
+                   std::vector<UncertainInput> const& /*uncertain*/, DesignReport& report) {
+  report.sheet = piv_sheet(loaded);
+}
+
+/// Experiment, and the function that adds its design sheet to a report.
+struct SheetKind {
+  Experiment const& experiment;
+  void (*add)(DesignRequest const& request, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
+              DesignReport& report);
+};
+constexpr std::array sheet_kinds{SheetKind{bos_experiment, add_bos_sheet}, SheetKind{piv_experiment, add_piv_sheet}};
+
 /// Adds the design sheet of a setup.
 void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
                DesignReport& report) {
@@ -61,18 +87,8 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
   report.warnings.insert(report.warnings.end(), neglected.begin(), neglected.end());
   Warnings const of_field = header_warnings(loaded.setup.medium);
   report.warnings.insert(report.warnings.end(), of_field.begin(), of_field.end());
-  if (loaded.setup.piv) {
-    report.sheet = piv_sheet(loaded);
-  } else {
-    report.given = std::make_unique<FixedDesignParameters>(collect_fixed_parameters(loaded));
-    report.best = make_design_point(loaded.setup, *report.given);
-    report.sheet = bos_sheet(loaded.setup, *report.best);
-    if (!uncertain.empty()) {
-      Backend const device = request.open_device();
-      report.uncertainty =
-          measurement_uncertainty(loaded, uncertain, *report.best, sheet_gradient(*report.given), *device.renderer);
-    }
-  }
+  for (SheetKind const& kind : sheet_kinds)
+    if (&kind.experiment == &loaded.setup.experiment()) kind.add(request, loaded, uncertain, report);
   report.text += fmt::format("{}\n{}", request.setup, sheet_text(report.sheet));
   if (report.uncertainty) report.text += uncertainty_text(*report.uncertainty);
 }

@@ -103,8 +103,9 @@ Measurement correlate_instant(CaseSetup const& loaded, RecordedCase const& made,
   Measurement measured = correlate_frames(in_case(place, case_file::reference), in_case(place, case_file::flow), frames,
                                           loaded.correlate, device);
   FileOrigin origin{"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, measured.device};
-  origin.sources.add_known("reference", pixel_sha256(grey_levels(frames.reference())));
-  origin.sources.add_known("flow", pixel_sha256(grey_levels(frames.flow())));
+  FramePair<std::uint16_t> const integers = levels.integers();
+  origin.sources.add_known("reference", pixel_sha256(integers.reference));
+  origin.sources.add_known("flow", pixel_sha256(integers.flow));
   write_vectors(in_case(place, case_file::vectors), measured.field, origin);
   return measured;
 }

@@ -183,7 +183,8 @@ OpticalLayout make_camera_layout(Setup const& setup) {
   ImagingGeometry const imaging = setup.imaging();
   double const half = setup.camera.rows / 2.0 * setup.camera.pixel_pitch, seen = half / imaging.magnification;
   double const z_b = setup.z_b(), behind = z_b - setup.z_a;  // distance from the mid-plane to the dots on the axis
-  bool const medium = setup.planes.empty() && setup.medium.field.kind != FieldKind::none;
+  LaserSetup const sheet = setup.piv ? setup.piv->laser : LaserSetup{.thickness = 0, .height = 0};
+  bool const medium = setup.experiment().correlated && setup.medium.field.kind != FieldKind::none;
   return {.dots_z = -behind,
           .lens_z = setup.z_a,
           .sensor_z = setup.z_a + imaging.image_distance + setup.element_shift(ElementSide::sensor),
@@ -193,8 +194,8 @@ OpticalLayout make_camera_layout(Setup const& setup) {
           .medium_half = seen * setup.z_a / z_b,
           .dots_half = seen,
           .cone_radius = imaging.entrance_pupil / 2 * behind / z_b,
-          .sheet_half_thickness = setup.piv ? setup.piv->laser.thickness / 2 : 0,
-          .sheet_half_height = setup.piv ? setup.piv->laser.height / 2 : 0,
+          .sheet_half_thickness = sheet.thickness / 2,
+          .sheet_half_height = sheet.height / 2,
           .planes = setup.planes};
 }
 
@@ -204,9 +205,10 @@ Figure make_camera_layout_figure(Setup const& setup) {
     throw DataError(ErrorCode::unsupported, "layout",
                     "cannot be drawn (the image distance or the view of the camera is infinite); omit --figure");
   }
-  return make_layout(l, {fmt::format("Layout along the camera's axis: f/{:.4g}, M = {:.4g}{}", setup.lens.f_number,
-                                     setup.imaging().magnification, setup.piv ? ", sheet drawn across the axis" : ""),
-                         fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
+  return make_layout(
+      l, {fmt::format("Layout along the camera's axis: f/{:.4g}, M = {:.4g}{}", setup.lens.f_number,
+                      setup.imaging().magnification, l.sheet_half_thickness > 0 ? ", sheet drawn across the axis" : ""),
+          fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
 Figure make_piv_layout_figure(Setup const& setup) {

@@ -64,7 +64,7 @@ std::string summarize_density(Reconstruction const& reconstruction) {
 
 ReportSection density_section(ReportPage& page, Reconstruction const& reconstruction) {
   nlohmann::ordered_json const summary = summarize_reconstruction(reconstruction);
-  page.data["density"] = summary;
+  page.data["density"] = summary.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   std::string const words = summarize_density(reconstruction);
   ReportSection section{"Density", {Paragraph{words}}};
   section.blocks.emplace_back(

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "render/files/base64.h"
 #include "studies/drawing/figure_json.h"
 #include "studies/report/embedded_text.h"
@@ -145,7 +147,8 @@ std::string html_page(ReportPage const& page) {
                       escaped(page.title), escaped(page.question));
   for (std::string const& finding : page.findings) html += "<li>" + escaped(finding) + "</li>\n";
   html += "</ol></header>\n";
-  nlohmann::json data = page.data;
+  nlohmann::json data;
+  for (auto const& [name, json] : page.data) data[name] = nlohmann::json::parse(json);
   data["charts"] = nlohmann::json::array();
   HtmlBlock const html_block{data["charts"]};
   for (ReportSection const& section : page.sections) {

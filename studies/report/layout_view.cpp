@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
+#include "render/scene/experiment.h"
 #include "studies/case/expected_particles.h"
 #include "studies/design/sheet.h"
 #include "studies/drawing/draw_figure.h"
@@ -45,16 +48,6 @@ std::string text_of_stop(Setup const& setup) {
       setup.lens.f_number, expected.image_diameter_px, expected.sheet_edge_diameter_px, expected.peak_electrons.median);
 }
 
-bool is_drawn(Setup const& setup) {
-  if (!setup.planes.empty() || setup.pose || setup.camera.tilted() || !setup.elements.empty()) return false;
-  if (setup.piv) {
-    LaserSetup const& laser = setup.piv->laser;
-    bool const upright = std::abs(laser.normal.z) > 1 - 1e-9 && laser.tilt == std::array<double, 2>{};
-    if (!upright || laser.centre.z != 0) return false;
-  }
-  return std::isfinite(setup.lens.f_number);
-}
-
 std::string map_text(DesignPoint<double> const& b) {
   return fmt::format(
       "Resolution against sensitivity over Z_D, one curve per f-number. The set-up is the point at {:.4g} px per "
@@ -62,38 +55,84 @@ std::string map_text(DesignPoint<double> const& b) {
       b.sensitivity(), resolved_wavelength(b) / mm);
 }
 
-Figure make_map(LayoutView const& view) {
-  return view.piv ? make_piv_map(*view.piv) : make_design_map(view.bench, nullptr);
+LayoutView view_bos(CaseSetup loaded) {
+  loaded.setup.medium.field.kind = FieldKind::none;
+  auto given = std::make_unique<FixedDesignParameters>(collect_fixed_parameters(loaded));
+  DesignPoint<double> const bench = make_design_point(loaded.setup, *given);
+  return {nullptr, std::move(loaded.setup), std::move(given), bench};
+}
+
+LayoutView view_piv(CaseSetup loaded) { return {nullptr, std::move(loaded.setup), nullptr, {}}; }
+
+bool has_upright_sheet(Setup const& setup) {
+  LaserSetup const& laser = setup.piv->laser;
+  bool const upright = std::abs(laser.normal.z) > 1 - 1e-9 && laser.tilt == std::array<double, 2>{};
+  return upright && laser.centre.z == 0;
 }
 
 }  // namespace
 
-Figure make_view_figure(LayoutView const& view) {
-  return view.piv ? make_piv_layout_figure(*view.piv) : make_layout_figure(view.bench);
+/// Layout and design map of an experiment in reports.
+struct LayoutKind {
+  Experiment const& experiment;
+  /// Returns true if the drawing covers the light sources of a setup.
+  bool (*covers)(Setup const& setup);
+  /// Creates the layout, except its kind.
+  LayoutView (*view)(CaseSetup loaded);
+  Figure (*layout)(LayoutView const& view);
+  std::string (*layout_text)(LayoutView const& view);
+  Figure (*map)(LayoutView const& view);
+  std::string (*map_text)(LayoutView const& view);
+};
+
+namespace {
+
+constexpr std::array layout_kinds{
+    LayoutKind{.experiment = bos_experiment,
+               .covers = [](Setup const& /*setup*/) { return true; },
+               .view = view_bos,
+               .layout = [](LayoutView const& view) { return make_layout_figure(view.bench); },
+               .layout_text = [](LayoutView const& view) { return text_of_layout(view.bench); },
+               .map = [](LayoutView const& view) { return make_design_map(view.bench, nullptr); },
+               .map_text = [](LayoutView const& view) { return map_text(view.bench); }},
+    LayoutKind{.experiment = piv_experiment,
+               .covers = has_upright_sheet,
+               .view = view_piv,
+               .layout = [](LayoutView const& view) { return make_piv_layout_figure(view.setup); },
+               .layout_text = [](LayoutView const& view) { return text_of_layout(view.setup); },
+               .map = [](LayoutView const& view) { return make_piv_map(view.setup); },
+               .map_text = [](LayoutView const& view) { return text_of_stop(view.setup); }}};
+
+/// Returns the kind of layout that covers a setup; null if none does.
+LayoutKind const* find_layout_kind(Setup const& setup) {
+  if (setup.pose || setup.camera.tilted() || !setup.elements.empty() || !std::isfinite(setup.lens.f_number)) {
+    return nullptr;
+  }
+  for (LayoutKind const& kind : layout_kinds)
+    if (&kind.experiment == &setup.experiment() && kind.covers(setup)) return &kind;
+  return nullptr;
 }
+
+}  // namespace
+
+Figure make_view_figure(LayoutView const& view) { return view.kind->layout(view); }
 
 std::optional<LayoutView> layout_view(CaseSetup loaded) {
-  if (!is_drawn(loaded.setup) || loaded.correlate.window_px.empty()) return std::nullopt;
-  if (loaded.setup.piv) return LayoutView{nullptr, {}, std::move(loaded.setup)};
-  loaded.setup.medium.field.kind = FieldKind::none;
-  auto given = std::make_unique<FixedDesignParameters>(collect_fixed_parameters(loaded));
-  DesignPoint<double> const bench = make_design_point(loaded.setup, *given);
-  return LayoutView{std::move(given), bench, std::nullopt};
+  LayoutKind const* const kind = find_layout_kind(loaded.setup);
+  if (!kind || loaded.correlate.window_px.empty()) return std::nullopt;
+  LayoutView view = kind->view(std::move(loaded));
+  view.kind = kind;
+  return view;
 }
 
-std::string layout_text(LayoutView const& view) {
-  return view.piv ? text_of_layout(*view.piv) : text_of_layout(view.bench);
-}
+std::string layout_text(LayoutView const& view) { return view.kind->layout_text(view); }
 
 ReportBlock layout_block(LayoutView const& view, std::string const& whose) {
   return Chart{"layout", "Layout of " + whose, layout_text(view), {{"", make_view_figure(view)}}};
 }
 
 ReportSection layout_section(LayoutView const& view, std::string const& whose) {
-  Chart map{"design_map",
-            "Design map of " + whose,
-            view.piv ? text_of_stop(*view.piv) : map_text(view.bench),
-            {{"", make_map(view)}}};
+  Chart map{"design_map", "Design map of " + whose, view.kind->map_text(view), {{"", view.kind->map(view)}}};
   return {"Set-up", {layout_block(view, whose), std::move(map)}};
 }
 
@@ -101,7 +140,7 @@ std::vector<std::string> draw_layout_and_map(std::string const& folder, std::str
                                              LayoutView const& view) {
   std::vector<std::string> const drawn{folder + "/layout." + format, folder + "/design_map." + format};
   draw_figure(make_view_figure(view), drawn.front());
-  draw_figure(make_map(view), drawn.back());
+  draw_figure(view.kind->map(view), drawn.back());
   return drawn;
 }
 

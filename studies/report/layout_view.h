@@ -13,11 +13,14 @@
 
 namespace gladstone::inline report {
 
+struct LayoutKind;
+
 /// Optical layout of a setup, as drawn in a report.
 struct LayoutView {
+  LayoutKind const* kind;  ///< functions that draw and describe it
+  Setup setup;
   std::unique_ptr<FixedDesignParameters> given;  ///< given properties of the set-up; null for PIV
   DesignPoint<double> bench;                     ///< model of the set-up; unused for PIV
-  std::optional<Setup> piv;
 };
 
 /// Creates the layout of a setup; nullopt if the drawing does not cover it: a calibration, a posed, tilted or plenoptic

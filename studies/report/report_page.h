@@ -1,6 +1,6 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -68,7 +68,7 @@ struct ReportPage {
   std::string question;
   std::vector<std::string> findings;
   std::vector<ReportSection> sections;
-  nlohmann::json data = nlohmann::json::object();  ///< results for programs that read the report
+  std::map<std::string, std::string> data;  ///< results for programs that read the report: JSON by its name
   /// files of vectors whose header declares another number of vectors, or that are likely not read as they were written
   std::vector<std::string> doubtful;
 };

@@ -53,27 +53,19 @@ std::optional<CaseWithImages> case_with_images(std::string const& folder) {
                   "contains neither the truth of dots nor that of particles");
 }
 
-std::vector<std::uint16_t> levels_of(Image<double> const& image) {
-  std::vector<std::uint16_t> levels(image.size());
-  std::transform(image.begin(), image.end(), levels.begin(),
-                 [](double level) { return static_cast<std::uint16_t>(level); });
-  return levels;
-}
-
 /// Reads the grey levels of both frames of a case. @throws DataError if their size differs from that of the first case
 std::vector<std::uint16_t> read_frames(CaseWithImages const& one, std::vector<std::size_t> const& size) {
   std::vector<std::uint16_t> both;
   for (char const* name : {case_file::reference, case_file::flow}) {
     std::string const path = in_case(one.folder, name);
-    Image<double> const image = read_image(path);
+    Image<std::uint16_t> const image = integer_levels(read_levels(path));
     if (static_cast<std::size_t>(image.rows()) != size[0] || static_cast<std::size_t>(image.columns()) != size[1]) {
       throw DataError(ErrorCode::wrong_shape, path,
                       fmt::format("has {} x {} px, but the first case's images {} x {}; a data set contains images of "
                                   "one size: pack a study whose camera.pixels are the same in all cases",
                                   image.columns(), image.rows(), size[1], size[0]));
     }
-    std::vector<std::uint16_t> const levels = levels_of(image);
-    both.insert(both.end(), levels.begin(), levels.end());
+    both.insert(both.end(), image.begin(), image.end());
   }
   return both;
 }
@@ -149,7 +141,8 @@ DatasetSizes determine_sizes(KeptCases const& kept, std::string const& run) {
   for (CaseWithImages const& one : kept.cases) {
     sizes.begin.push_back(sizes.begin.back() + static_cast<std::int64_t>(one.count));
   }
-  Image<double> const sample = read_image(in_case(kept.cases.front().folder, case_file::reference));
+  Image<std::uint16_t> const sample =
+      integer_levels(read_levels(in_case(kept.cases.front().folder, case_file::reference)));
   sizes.pixels = {static_cast<std::size_t>(sample.rows()), static_cast<std::size_t>(sample.columns())};
   for (CaseWithImages const& one : kept.cases) {
     if (one.sources == kept.sources()) continue;

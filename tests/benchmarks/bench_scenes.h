@@ -38,7 +38,7 @@ inline PlannedScene table1_scene(int per_side, std::uint64_t rays_per_dot, int p
   setup.target.kind = TargetKind::dots;
   setup.target.dots_per_32px_window = per_side > 0 ? 1 : 20;
   PlannedScene scene(build_scene(setup));
-  scene.setup.render.rays_per_dot = scene.plan.rays = rays_per_dot;
+  scene.setup.render.rays_per_dot = scene.plan.given_rays = scene.plan.rays = rays_per_dot;
   if (per_side == 0) return scene;
   double const edge = 36.0, pitch = (setup.camera.columns - 1 - 2 * edge) / (per_side - 1);
   scene.dots.centre.clear();

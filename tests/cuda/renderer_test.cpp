@@ -89,7 +89,7 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
       setup.camera.noise.dark_current_e = 30;
     });
     for (Polarity const polarity : {Polarity::bright, Polarity::dark}) {
-      scene.setup.target.polarity = polarity;
+      scene.plan.polarity = polarity;
       Rendering const moved = on_device(scene);
       Rendering const kept = renderer_->render(scene, scene.plan, scene.dots, RenderImages::in_place, RenderTheory::no);
       ASSERT_TRUE(kept.in_place);

@@ -14,7 +14,7 @@ namespace {
 
 /// Plans the rays of a scene with rays_per_dot = "auto", by the fast renderer if it supports the scene.
 RenderPlan plan_rays_anew(PlannedScene& scene) {
-  scene.setup.render.rays_per_dot.reset();
+  scene.plan.given_rays.reset();
   auto const dots = build_focused_dots(scene, scene.plan);
   return scene.plan = dots ? plan_rays_by_table(*dots) : plan_rays_by_tracing(scene, scene.plan);
 }
@@ -145,7 +145,8 @@ TEST(PlanRays, StaysWithinItsBudget) {
   double const seconds = ray_seconds(scene, scene.plan) * static_cast<double>(plan.rays);
   EXPECT_LE(seconds, source_budget_s);
   EXPECT_GT(2 * seconds, source_budget_s) << "twice as many would exceed the budget";
-  EXPECT_GT(measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria.value().level), image_tolerance_levels);
+  EXPECT_GT(measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria.value().level, all_sources(scene)),
+            image_tolerance_levels);
   scene.dots = select_dots(scene.dots, {0, 100, 200});
   for (std::int64_t const rays : render_all(scene).truth.rays_planned) {
     EXPECT_EQ(rays, static_cast<std::int64_t>(plan.rays));

@@ -28,8 +28,8 @@ Coverage coverage_of(PlannedScene const& scene, std::uint64_t many_rays, int see
   Renderer& renderer = build_focused_dots(scene, scene.plan) ? static_cast<Renderer&>(fast) : general;
   auto const truth_of = [&](std::uint64_t rays, std::uint64_t seed) {
     PlannedScene other = scene;
-    other.setup.render.rays_per_dot = other.plan.rays = rays;
-    other.setup.render.seed = repeat_seed(scene.setup.render.seed, seed);
+    other.plan.given_rays = other.plan.rays = rays;
+    other.plan.seed = repeat_seed(scene.plan.seed, seed);
     return renderer.render(other, other.plan, other.dots, RenderImages::no, RenderTheory::no);
   };
   Rendering const reference = truth_of(many_rays, 1000);

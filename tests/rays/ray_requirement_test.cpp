@@ -8,6 +8,7 @@
 #include "render/light/laser_sheet.h"
 #include "render/rays/rays_ladder.h"
 #include "render/rays/sample_images.h"
+#include "render/scene/source_sample.h"
 #include "tests/scene/piv_setups.h"
 #include "tests/scene/real_lens_setups.h"
 #include "tests/scene/small_scenes.h"
@@ -202,7 +203,7 @@ TEST(RayNeed, ImageErrorContainsWhatARuleLeavesOfAberrations) {
   PlannedScene const scene = scene_with(setup, places);
   Rendering const found = render(scene), exact = render(of_most_rays(scene));
   double const off = image_error(scene, found.light, exact.light);
-  double const stated = measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria->level);
+  double const stated = measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria->level, all_sources(scene));
   EXPECT_GT(off, 0.01);
   EXPECT_LT(off, 3 * stated) << stated;
   EXPECT_GT(off, stated / 3) << stated;
@@ -239,7 +240,7 @@ PlannedScene points_behind_blob(std::vector<Vec2d> const& at_px) {
   setup.camera.exposure_e = 20000;
   setup.target.dot_diameter_px = 0;
   PlannedScene scene = scene_with_dots(setup, at_px, 1);
-  scene.setup.render.rays_per_dot.reset();
+  scene.plan.given_rays.reset();
   scene.plan = plan_rays_by_tracing(scene, scene.plan);
   return scene;
 }
@@ -259,7 +260,7 @@ TEST(RayNeed, IsMoreOfADotThatNoRayShows) {
                          [](Vec2d d) { return std::isnan(d.x); });
   };
   EXPECT_GT(unseen(render(scene).truth), 0);
-  scene.setup.render.rays_per_dot.reset();
+  scene.plan.given_rays.reset();
   scene.plan = plan_rays_by_tracing(scene, scene.plan);
   EXPECT_EQ(unseen(render(scene).truth), 0);
 }

@@ -15,6 +15,7 @@
 #include "render/rays/rays_ladder.h"
 #include "render/rays/sample_images.h"
 #include "render/rays/source_tracer.h"
+#include "render/scene/source_sample.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -216,7 +217,7 @@ TEST(RaysRenderer, TruthOfADotIsIndependentOfOthers) {
 TEST(RaysRenderer, SeesWhitePaperByTheFourthPowerOfTheCosine) {
   auto const setup = table1_setup(512);
   PlannedScene const scene = scene_with_dots(setup, {{200, 200}}, 64);
-  Image<double> const white = render_white_target(scene), expected = render_white_light(scene);
+  Image<double> const white = render_white_target(scene, scene.plan.seed), expected = render_white_light(scene);
   // 4096 rays and a smoothed edge of the stop; over the light cone at f/11, the mean of cos^4 is 2e-5 less than on the
   // axis
   EXPECT_NEAR(white(0, 0), expected(0, 0), 2e-4);
@@ -234,10 +235,11 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   EXPECT_LT(plan_step(scene).change_px, 1e-4);
   scene.plan = plan_rays_by_tracing(scene, scene.plan);
   // The goals are reached: half a level in the images, and another seed has the same truth within 1e-3 px.
-  EXPECT_LE(measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria.value().level), image_tolerance_levels);
+  EXPECT_LE(measure_image_error(scene, scene.plan, scene.plan.adaptive_criteria.value().level, all_sources(scene)),
+            image_tolerance_levels);
   Rendering const one = by_rays(scene, RenderImages::no);
   EXPECT_LE(truth_accuracy(one.truth, truth_tolerance_px).rms_px, truth_tolerance_px);
-  scene.setup.render.seed = 99;
+  scene.plan.seed = 99;
   Rendering const two = by_rays(scene, RenderImages::no);
   for (std::size_t dot = 0; dot < one.truth.size(); ++dot) {
     EXPECT_LT(length(one.truth.displacement_px[dot] - two.truth.displacement_px[dot]), 5 * truth_tolerance_px);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "render/base/random.h"
+#include "render/scene/source_sample.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -37,7 +38,7 @@ FramePair<double> render_light(PlannedScene const& scene) {
 /// Returns the scatter of an image in the worse frame, from this and another one with another seed: rms over lit pixels
 /// [levels].
 double scatter_of_images(PlannedScene scene, FramePair<double> const& one, double level) {
-  scene.setup.render.seed = repeat_seed(scene.setup.render.seed, 5);
+  scene.plan.seed = repeat_seed(scene.plan.seed, 5);
   FramePair<double> const other = render_light(scene);
   double worse = 0;
   for (auto frame : {&FramePair<double>::reference, &FramePair<double>::flow}) {
@@ -64,7 +65,7 @@ TEST(ImageError, IsTheScatterOfImagesOfAllDots) {
     scene.plan.rays = focus == Focus::target ? 256 : 2048;
     FramePair<double> const light = render_light(scene);
     double const level = level_of(light), found = scatter_of_images(scene, light, level);
-    double const stated = measure_image_error(scene, scene.plan, level);
+    double const stated = measure_image_error(scene, scene.plan, level, all_sources(scene));
     EXPECT_GT(found, 0.1);
     EXPECT_NEAR(stated / found, 1, 0.25) << stated << " levels for " << found;
   }
@@ -74,11 +75,11 @@ TEST(ImageError, IsTheScatterOfImagesOfAllDots) {
 TEST(ImageError, IsTheScatterOfAdaptiveRays) {
   PlannedScene scene = wave_scene(Focus::target);
   scene.setup.camera.bit_depth = 8;
-  scene.setup.render.rays_per_dot.reset();
   scene.plan = plan_rays_by_tracing(scene, scene.plan);
   FramePair<double> const light = render_light(scene);
   double const level = level_of(light) * 4095 / 255;
-  double const stated = measure_image_error(scene, scene.plan, level), found = scatter_of_images(scene, light, level);
+  double const stated = measure_image_error(scene, scene.plan, level, all_sources(scene)),
+               found = scatter_of_images(scene, light, level);
   EXPECT_NEAR(stated / found, 1, 0.25) << stated << " levels for " << found;
 }
 
@@ -89,7 +90,7 @@ TEST(BrightestPixel, IsThatOfTheImageOfAllDots) {
     PlannedScene scene = wave_scene(focus);
     scene.plan.rays = 256;
     double const found = level_of(render_light(scene)) * 0.9 * 4095;
-    EXPECT_NEAR(brightest_pixel(render_sample(scene, scene.plan)) / found, 1, 0.25);
+    EXPECT_NEAR(brightest_pixel(render_sample(scene, scene.plan, all_sources(scene))) / found, 1, 0.25);
   }
 }
 

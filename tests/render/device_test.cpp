@@ -84,7 +84,7 @@ TEST(SideFaces, CutTheConesOfThoseListedAlone) {
 // scale in single pixels.)
 TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
   PlannedScene scene = volume_in_view(32);
-  scene.setup.render.rays_per_dot.reset();
+  scene.plan.given_rays.reset();
   scene.plan.adaptive_criteria = AdaptiveRayCriteria{1e-7, 3685};  // as many rays as are allowed
   auto const most = static_cast<std::int64_t>(max_rays_per_source(scene, scene.plan));
   // The bounds below are those of 8192 rays. Errors of a cone that is cut in two decrease between 1/sqrt(rays) and
@@ -99,7 +99,7 @@ TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
   PlannedScene exact = scene;
   exact.plan.adaptive_criteria.reset();
   exact.plan.rays = 65536;
-  exact.setup.render.seed = 99;
+  exact.plan.seed = 99;
   Rendering const plain = RaysRenderer().render(exact, exact.plan, exact.dots, RenderImages::yes, RenderTheory::yes);
   for (std::size_t dot = 0; dot < scene.dots.centre.size(); ++dot) {
     bool const at_face = std::binary_search(left.begin(), left.end(), dot);
@@ -158,7 +158,7 @@ TEST(SideFaces, RaysThereAreCountedOnce) {
 TEST(SideFaces, DarkDotsAreWhiteLessBright) {
   PlannedScene scene = volume_in_view(32);
   Rendering const bright = render(scene);
-  scene.setup.target.polarity = Polarity::dark;
+  scene.plan.polarity = Polarity::dark;
   Rendering const dark = render(scene);
   Image<double> const white = render_white_light(scene);
   for (std::size_t i = 0; i < white.size(); ++i) {
@@ -208,7 +208,7 @@ TEST(SideFaces, AreMeasuredWithAGivenNumber) {
     Rendering const found = RaysRenderer().render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no);
     double const level = largest(found.light.flow) / (0.9 * 4095);
     return std::pair{truth_accuracy(found.truth, truth_tolerance_px).rms_px,
-                     measure_image_error(scene, scene.plan, level)};
+                     measure_image_error(scene, scene.plan, level, all_sources(scene))};
   };
   auto const few = measured(32), many = measured(2048);
   EXPECT_GT(few.first, truth_tolerance_px);
@@ -222,7 +222,7 @@ TEST(SideFaces, AreMeasuredWithAGivenNumber) {
 TEST(SideFaces, ImagesAreOffByTheStatedError) {
   PlannedScene const scene = dots_at_faces(32);
   PlannedScene other = scene;
-  other.setup.render.seed = 99;
+  other.plan.seed = 99;
   RaysRenderer renderer;
   Image<double> const
       one = renderer.render(scene, scene.plan, scene.dots, RenderImages::yes, RenderTheory::no).light.flow,
@@ -235,7 +235,8 @@ TEST(SideFaces, ImagesAreOffByTheStatedError) {
     square += (a - b) * (a - b) / (2 * level * level);
     ++lit;
   }
-  double const found = std::sqrt(square / lit), stated = measure_image_error(scene, scene.plan, level);
+  double const found = std::sqrt(square / lit),
+               stated = measure_image_error(scene, scene.plan, level, all_sources(scene));
   EXPECT_GT(stated, found / 2);
   EXPECT_LT(stated, found * 2);
 }

@@ -50,6 +50,31 @@ TEST(Render, ChoosesStepAndMethodOfAScene) {
   EXPECT_TRUE(again.light.flow.empty());
 }
 
+// The seed and the polarity of a plan replace those of the setup: one scene, rendered by a changed plan, gives the same
+// bits as the scene of a changed setup.
+TEST(Render, UsesSeedAndPolarityOfThePlan) {
+  auto setup = table1_setup(48);
+  setup.medium.field = sinusoid(0.02, 4e-3);
+  setup.render.rays_per_dot = 32;
+  auto changed = setup;
+  changed.render.seed = 99;
+  changed.target.polarity = Polarity::dark;
+  Device device = cpu();
+  for (RenderMethod const method : {RenderMethod::focused_dots, RenderMethod::rays}) {
+    setup.render.method = changed.render.method = method;
+    Scene const scene = build_scene(setup), other = build_scene(changed);
+    RenderPlan plan = plan_rendering(scene);
+    Rendering const first = render(scene, plan, device);
+    plan.seed = 99;
+    plan.polarity = Polarity::dark;
+    Rendering const found = render(scene, plan, device), expected = render(other, plan_rendering(other), device);
+    EXPECT_EQ(found.truth.displacement_px, expected.truth.displacement_px);
+    EXPECT_NE(found.truth.displacement_px, first.truth.displacement_px);
+    EXPECT_TRUE(std::equal(found.light.flow.begin(), found.light.flow.end(), expected.light.flow.begin(),
+                           expected.light.flow.end()));
+  }
+}
+
 TEST(Render, RendersTheParticlesOfAPivScene) {
   auto setup = piv_setup(2e-3, 1e-3);
   setup.camera.columns = setup.camera.rows = 64;

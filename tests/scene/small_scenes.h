@@ -56,7 +56,7 @@ inline PlannedScene scene_with_dots(Setup const& setup, std::vector<Vec2d> const
   scene.dots.centre.clear();
   for (Vec2d const p : at_px) scene.dots.centre.push_back(scene.to_target(p));
   plan_step(scene);
-  scene.setup.render.rays_per_dot = scene.plan.rays = rays;
+  scene.setup.render.rays_per_dot = scene.plan.given_rays = scene.plan.rays = rays;
   return scene;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "render/files/base64.h"
 
@@ -41,7 +42,7 @@ ReportPage hostile_page() {
         TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true},
         FramePictures{hostile, hostile, "a", "b", "one", "two"},
         Chart{"figure", hostile, hostile, {{hostile, titled_figure(hostile)}}}, FigureFile{hostile, hostile}}}};
-  page.data = {{"text", hostile}};
+  page.data = {{"text", nlohmann::json(hostile).dump()}};
   return page;
 }
 

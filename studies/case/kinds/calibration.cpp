@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "studies/case/calibration_case.h"
 #include "studies/case/kinds/shared_parts.h"
 #include "studies/case/shared_target.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "render/base/integer_frames.h"
 #include "render/planning.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/truth_file.h"
@@ -30,8 +31,9 @@ CaseWriter render_pair(CaseSetup& loaded, Renderer& renderer, ReusableParts cons
   loaded.setup.shared_particles = shared.particles;
   auto const finished = std::make_shared<RecordedCase>(render_case_in_memory(loaded, renderer, known));
   if (!shared.reference.empty()) {
-    finished->frames.levels = std::make_shared<HostFrames const>(Image<double>(shared.reference),
-                                                                 Image<double>(finished->frames.levels->flow()));
+    FramePair<std::uint16_t> levels = finished->frames.levels->integers();
+    levels.reference = shared.reference;
+    finished->frames.levels = std::make_shared<IntegerFrames const>(std::move(levels));
   }
   Rendering const& rendering = *finished->rendered.rendering;
   entry.sources = rendering.truth.size();

@@ -156,17 +156,22 @@ TEST(ImageFile, WebPIsRead) {
   for (double const level : image) EXPECT_NEAR(level, 100, 2);
 }
 
-TEST(ImageFile, TwelvePackedBitsKeepTheirValues) {
-  std::string const path = temporary("12.tif");
+/// Writes a TIFF of 12 packed bits that contains every value once.
+std::string write_packed_bits() {
+  std::string path = temporary("12.tif");
   OIIO::ImageSpec spec(4096, 1, 1, OIIO::TypeDesc::UINT16);
   spec["oiio:BitsPerSample"] = 12;
   std::vector<std::uint16_t> samples(4096);
   for (int i = 0; i < 4096; ++i) samples[i] = static_cast<std::uint16_t>((i * 65535 + 2047) / 4095);
   auto const output = OIIO::ImageOutput::create(path);
-  ASSERT_TRUE(output && output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT16, samples.data()));
-  ASSERT_TRUE(output->close());
+  EXPECT_TRUE(output && output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT16, samples.data()));
+  EXPECT_TRUE(output->close());
+  return path;
+}
+
+TEST(ImageFile, TwelvePackedBitsKeepTheirValues) {
   ImageMetadata metadata;
-  auto const image = read_image(path, &metadata);
+  auto const image = read_image(write_packed_bits(), &metadata);
   EXPECT_EQ(metadata.bit_depth, 12);
   for (int i = 0; i < 4096; ++i) ASSERT_EQ(image(i, 0), i);
 }
@@ -186,6 +191,39 @@ TEST(ImageFile, ColourBecomesLuminanceAndAlphaIsIgnored) {
   // OpenImageIO's writer assumes that 50 is already multiplied by the opacity 128/255, and stores 50 / (128/255) =
   // 99.6.
   EXPECT_NEAR(grey(1, 0), 99.6, 1.0);
+}
+
+// Integers of one channel are read as they are; colours and floats are real numbers. The grey levels and the hash are
+// those of read_image().
+TEST(ImageFile, IntegersAreReadAsTheyAre) {
+  std::string const turned = temporary("turned.tif");
+  OIIO::ImageSpec spec(3, 2, 1, OIIO::TypeDesc::UINT16);
+  spec["Orientation"] = 6;
+  std::vector<std::uint16_t> const samples{1, 2, 3, 40000, 50000, 65535};
+  auto const output = OIIO::ImageOutput::create(turned);
+  ASSERT_TRUE(output && output->open(turned, spec) && output->write_image(OIIO::TypeDesc::UINT16, samples.data()));
+  ASSERT_TRUE(output->close());
+  std::string const written = temporary("written.tif");
+  write_tiff(written, all_values(), {12, 0, ""});
+  for (auto const& [path, are_integers] :
+       {std::pair{turned, true},
+        {written, true},
+        {write_packed_bits(), true},
+        {write_picture<std::uint8_t>("8.png", {0, 1, 128, 255}, 2, 1), true},
+        {write_picture<std::uint8_t>("rgb.png", {100, 0, 0, 0, 100, 0}, 2, 3), false},
+        {write_picture<float>("float.tif", {-1.5f, 0.25f, 1e6f, 3.0f}, 2, 1), false}}) {
+    ImageMetadata metadata;
+    Image<double> const expected = read_image(path, &metadata);
+    StoredLevels const found = read_levels(path);
+    EXPECT_EQ(std::holds_alternative<Image<std::uint16_t>>(found), are_integers) << path;
+    std::visit(
+        [&, &name = path](auto const& image) {
+          EXPECT_EQ(image.columns(), expected.columns()) << name;
+          EXPECT_TRUE(std::equal(image.begin(), image.end(), expected.begin(), expected.end())) << name;
+        },
+        found);
+    EXPECT_EQ(pixel_sha256(path), pixel_sha256(expected, metadata.sample_bits)) << path;
+  }
 }
 
 TEST(ImageFile, EqualImagesAreEqualFiles) {
