@@ -569,18 +569,12 @@ class NrrdField : public FolderFixture {
  protected:
   static std::string header(std::string const& fields) { return "NRRD0005\n# a comment\nnote:=ignored\n" + fields; }
 
-  std::string write(std::string const& name, std::string const& content) const {
-    std::ofstream(in_folder(name), std::ios::binary) << content;
-    return in_folder(name);
-  }
-
   std::string gzipped(std::string const& content) const {
     std::string const path = in_folder("scratch.gz");
     gzFile const file = gzopen(path.c_str(), "wb");
     gzwrite(file, content.data(), static_cast<unsigned>(content.size()));
     gzclose(file);
-    std::ifstream stored(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stored), {}};
+    return gladstone::content(path);
   }
 
   void expect_numbered(std::string const& path) const {
