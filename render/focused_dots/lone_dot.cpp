@@ -22,7 +22,7 @@ Scene alone(Scene const& scene, Vec2d place) {
 LoneDot::LoneDot(FocusedDots const& all, Vec2d place, int side) : scene_(alone(all.scene(), place)), side_(side) {
   FocusedDots const dots = build_focused_dots(scene_, all.plan()).value();
   Vec2d const centre = scene_.dots.centre[0];
-  double room = DeflectionTableLayout::default_aim_distance * scene_.imaging.entrance_pupil / 2;
+  double room = DeflectionTableLayout::default_aim_distance(scene_.imaging);
   do {
     table_ = std::make_unique<DeflectionMap>(dots, DeflectionTableLayout(dots, scene_.dots, room));
     owned_ = std::make_unique<OwnedDotModel>(dots, scene_.dots, table_->table(), true);
