@@ -74,16 +74,6 @@ RecordedCase render_case_in_memory(CaseSetup& loaded, Renderer& renderer, Reusab
   return finished;
 }
 
-RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
-  OutputFolder output(folder, case_content());
-  RecordedCase finished = render_case_in_memory(loaded, renderer);
-  output.fill([&](std::string const& place) {
-    write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
-  });
-  output.commit();
-  return finished;
-}
-
 Image<std::uint16_t> grey_levels(Image<double> const& levels) {
   Image<std::uint16_t> image(levels.columns(), levels.rows());
   std::transform(levels.begin(), levels.end(), image.begin(),
@@ -155,10 +145,15 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   return summary;
 }
 
-nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                          RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
-  return write_case(loaded, prepared, rendered, frames, judge_case(loaded, prepared, rendered, frames, renderer),
-                    folder);
+WrittenCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
+  OutputFolder output(folder, case_content());
+  WrittenCase written{render_case_in_memory(loaded, renderer), {}};
+  auto const& [prepared, rendered, frames] = static_cast<RecordedCase const&>(written);
+  written.outcome = judge_case(loaded, prepared, rendered, frames, renderer);
+  output.fill(
+      [&](std::string const& place) { write_case(loaded, prepared, rendered, frames, written.outcome, place); });
+  output.commit();
+  return written;
 }
 
 }  // namespace gladstone::inline cases

@@ -50,7 +50,9 @@ CaseWriter render_pair(CaseSetup& loaded, Renderer& renderer, ReusableParts cons
   entry.device = rendering.device.empty() ? renderer.device() : rendering.device;
   medium = finished->prepared.scene.medium;
   return [&loaded, &renderer, finished](std::string const& folder) {
-    return write_case(loaded, finished->prepared, finished->rendered, finished->frames, renderer, folder);
+    auto const& [prepared, rendered, frames] = *finished;
+    return write_case(loaded, prepared, rendered, frames, judge_case(loaded, prepared, rendered, frames, renderer),
+                      folder);
   };
 }
 
