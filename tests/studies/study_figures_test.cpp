@@ -228,13 +228,16 @@ TEST(StudyFigureMaker, ComparesTheCoverageWithThatOfNormalErrors) {
 TEST(StudyFigureMaker, PlotsAPointForEveryFinishedCase) {
   StudyTable table = grid({numbers("lens.f_number", {4, 8, 16})}, 1);
   table.rows[0].status = CaseStatus::failed;
-  std::optional<Figure> const figure = StudyFigureMaker(table).make_case_points("ray_truth.rms_px", "eq9.rms_px");
+  for (StudyRow& row : table.rows) row.measures[2] = 0.25 * static_cast<double>(row.index);  // signal
+  std::optional<Figure> const figure = StudyFigureMaker(table).make_case_points();
   ASSERT_TRUE(figure);
   plot::Layer const& points = figure->panels.front().layers.front();
-  EXPECT_THAT(points.columns[0], ElementsAre(0.02, 0.03));
+  EXPECT_THAT(points.columns[0], ElementsAre(0.25, 0.5));
   EXPECT_THAT(points.columns[1], ElementsAre(0.04, 0.06));
-  EXPECT_EQ(points.notes[1], "case 2\nf-number: 16\nray_truth.rms_px [px]: 0.03\neq9.rms_px [px]: 0.06");
-  EXPECT_FALSE(StudyFigureMaker(table).make_case_points("flow.rms_px", "eq9.rms_px"));
+  EXPECT_EQ(points.notes[1], "case 2\nf-number: 16\nsignal: 0.5 px\nmeasured − Eq. 9: 0.06 px");
+  EXPECT_EQ(figure->panels.front().y.label, "measured − Eq. 9, rms per component [px]");
+  table.measures[2] = "other_px";
+  EXPECT_FALSE(StudyFigureMaker(table).make_case_points()) << "a study without signals";
 }
 
 TEST_F(StudyFigures, LeaveOutWhatIsNotThere) {
