@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "analysis/vectors/vector_readers/text_rows.h"
