@@ -82,7 +82,7 @@ Image<std::uint16_t> grey_levels(Image<double> const& levels) {
 }
 
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                       RecordedFrames const& frames, Renderer const& renderer) {
+                       RecordedFrames const& frames) {
   CaseOutcome outcome;
   Warnings& warnings = outcome.warnings = prepared.warnings;
   if (loaded.setup.render.precision == Precision::single) {
@@ -96,7 +96,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   outcome.table_error = accuracy.table;
   outcome.image_error_levels = accuracy.image_levels;
   if (accuracy.table) warn_of_table(warnings, *accuracy.table);
-  outcome.device = rendering.device.empty() ? renderer.device() : rendering.device;
+  outcome.device = rendering.device;
   // If the rays are chosen again, they are chosen for the same exposure, so "auto" remains.
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
@@ -149,7 +149,7 @@ WrittenCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
   OutputFolder output(folder, case_content());
   WrittenCase written{render_case_in_memory(loaded, renderer), {}};
   auto const& [prepared, rendered, frames] = static_cast<RecordedCase const&>(written);
-  written.outcome = judge_case(loaded, prepared, rendered, frames, renderer);
+  written.outcome = judge_case(loaded, prepared, rendered, frames);
   output.fill(
       [&](std::string const& place) { write_case(loaded, prepared, rendered, frames, written.outcome, place); });
   output.commit();

@@ -74,7 +74,7 @@ struct CaseOutcome : RenderedOutcome {
 /// Determines accuracy, grey levels and warnings of a rendered case, logs its warnings, and stores the values used for
 /// "auto" in the setup.
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                       RecordedFrames const& frames, Renderer const& renderer);
+                       RecordedFrames const& frames);
 
 /// Converts grey levels, which are whole numbers, to the integers of an image file.
 Image<std::uint16_t> grey_levels(Image<double> const& levels);
