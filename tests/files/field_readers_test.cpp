@@ -21,6 +21,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
 #include "tests/support/folder_fixture.h"
+#include "tests/support/number_bytes.h"
 
 namespace gladstone {
 namespace {
@@ -46,20 +47,6 @@ std::vector<double> numbered(int nx, int ny, int nz) {
     }
   }
   return values;
-}
-
-/// Returns the bytes of numbers in a stored type and byte order.
-template <class Stored>
-std::string bytes(std::vector<double> const& values, bool big_endian = false) {
-  std::string text;
-  for (double const value : values) {
-    auto const stored = static_cast<Stored>(value);
-    char raw[sizeof(Stored)];
-    std::memcpy(raw, &stored, sizeof(Stored));
-    if (big_endian == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof(Stored));
-    text.append(raw, sizeof(Stored));
-  }
-  return text;
 }
 
 class JhtdbField : public FolderFixture {
