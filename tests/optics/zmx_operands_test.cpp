@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "render/base/units.h"
 #include "render/optics/paraxial.h"
