@@ -10,7 +10,6 @@
 #include "render/base/warning.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/renderer.h"
-#include "render/sensor/detector.h"
 #include "studies/case/case.h"
 
 namespace gladstone::inline cases {
