@@ -42,6 +42,7 @@ TEST(IncludeArrows, LeaveCommentsOut) {
 TEST(IncludeArrows, SeeAnIncludeAfterSlashesInAString) {
   EXPECT_EQ(includes_of("char const* s = \"/*\";\n#include <a>\n").size(), 1U);
   EXPECT_EQ(includes_of("char c = '\"'; int n = 1'000;\n/* ' */ #include <a>\n").size(), 1U);
+  EXPECT_EQ(includes_of("auto s = R\"x(/* \")x\";\n#include <a>\n").size(), 1U);
 }
 
 TEST(IncludeArrows, AllowWhatTheTableHas) {
