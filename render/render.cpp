@@ -158,8 +158,11 @@ Device cpu() { return {std::make_unique<FocusedDotsRenderer>(), std::make_unique
 
 Rendering render(Scene const& scene, RenderPlan const& plan, Renderer& device, RenderImages images,
                  RenderTheory theory) {
-  if (scene.setup.experiment().sources.on_target) return device.render(scene, plan, scene.dots, images, theory);
-  return device.render_particles(scene, plan, scene.particles, ParticleLight::scattered, images);
+  Rendering rendering = scene.setup.experiment().sources.on_target
+                            ? device.render(scene, plan, scene.dots, images, theory)
+                            : device.render_particles(scene, plan, scene.particles, ParticleLight::scattered, images);
+  if (rendering.device.empty()) rendering.device = device.device();
+  return rendering;
 }
 
 Rendering render(Scene const& scene, Renderer& device, RenderImages images, RenderTheory theory) {

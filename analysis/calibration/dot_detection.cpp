@@ -5,11 +5,13 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "analysis/calibration/dot_regions.h"
 #include "analysis/preparation/illumination.h"
 #include "analysis/preparation/opencv_call.h"
+#include "render/base/median.h"
 
 namespace gladstone::inline calibration {
 namespace {
@@ -43,9 +45,7 @@ cv::Mat matrix_of(Image<double> const& image) {
 double median_size(Image<double> const& levels) {
   std::vector<double> sizes;
   for (double const level : levels) sizes.push_back(std::abs(level));
-  auto const middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  return upper_median(std::move(sizes));
 }
 
 LitPicture lit_picture(Image<double> const& picture) {
@@ -60,8 +60,7 @@ LitPicture lit_picture(Image<double> const& picture) {
   if (lit.dots == Dots::dark) {
     for (double& level : over) level = -level;
   }
-  // for normally distributed noise, 1.4826 times the median magnitude is the standard deviation
-  lit.noise = 1.4826 * median_size(over);
+  lit.noise = sigma_per_median_deviation * median_size(over);  // for normally distributed noise
   // If all grey levels are integers, rounding may hide all noise.
   if (std::all_of(picture.begin(), picture.end(), [](double level) { return level == std::floor(level); })) {
     lit.noise = std::max(lit.noise, rounding);

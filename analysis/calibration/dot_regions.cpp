@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "render/base/median.h"
+
 namespace gladstone::inline calibration {
 namespace {
 
@@ -99,9 +101,7 @@ template <class Value>
 double median_of(std::vector<Shape> const& shapes, Value const& value) {
   std::vector<double> values;
   for (Shape const& shape : shapes) values.push_back(value(shape));
-  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median(std::move(values));
 }
 
 /// Returns true if the size and the shape of a region are close to the medians over all regions. The tolerances

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/calibration/grid_smoothness.h"
+#include "render/base/median.h"
 
 namespace gladstone::inline calibration {
 namespace {
@@ -51,12 +52,6 @@ std::optional<Vec2d> first_step(std::vector<DetectedDot> const& dots, std::size_
   return nearest;
 }
 
-double median(std::vector<double> values) {
-  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Chooses the start among the dots nearest to the centroid: the dot whose steps are closest to the median steps, which
 /// is robust to missing neighbours and spurious spots.
 std::optional<Beginning> begin(std::vector<DetectedDot> const& dots, ExpectedView const& expected) {
@@ -77,7 +72,7 @@ std::optional<Beginning> begin(std::vector<DetectedDot> const& dots, ExpectedVie
   auto const middle_of = [&candidates](auto const& component) {
     std::vector<double> values;
     for (Beginning const& candidate : candidates) values.push_back(component(candidate.steps));
-    return median(std::move(values));
+    return upper_median(std::move(values));
   };
   Vec2d const x{middle_of([](Steps const& s) { return s.x.x; }), middle_of([](Steps const& s) { return s.x.y; })};
   Vec2d const y{middle_of([](Steps const& s) { return s.y.x; }), middle_of([](Steps const& s) { return s.y.y; })};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/base/median.h"
+
 namespace gladstone::inline calibration {
 namespace {
 
@@ -96,7 +98,7 @@ bool remove_missized(SmoothGrid& grid) {
   Eigen::MatrixXd const diameters = diameters_of(grid.dots);
   Eigen::VectorXd const size = compute_residuals(grid.dots, diameters, 1).cwiseAbs().rowwise().norm();
   double const least = std::max(least_of_diameter * median_of(diameters.col(0)), least_diameter_px);
-  return remove_larger(grid, size, std::max(deviations * 1.4826 * median_of(size), least));
+  return remove_larger(grid, size, std::max(deviations * sigma_per_median_deviation * median_of(size), least));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/SparseCore>
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>

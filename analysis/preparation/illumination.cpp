@@ -1,7 +1,10 @@
 #include "analysis/preparation/illumination.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
+
+#include "render/base/median.h"
 
 namespace gladstone::inline preparation {
 namespace {
@@ -30,9 +33,7 @@ double block_median(Image<double> const& levels, int left, int right, int top, i
   for (int row = top; row < low; ++row) {
     for (int column = left; column < right; ++column) values.push_back(levels(column, row));
   }
-  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median(std::move(values));
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "render/base/contracts.h"
+#include "render/base/median.h"
 
 namespace gladstone::inline stereo {
 namespace {
@@ -17,10 +19,7 @@ double estimate_residual_scale(StereoField const& field) {
   std::vector<double> residuals;
   for (auto const& node : field.nodes)
     if (node) residuals.push_back(node->residual_px);
-  if (residuals.empty()) return 0.0;
-  auto const middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return *middle / median_of_normal;
+  return upper_median(std::move(residuals)) / median_of_normal;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
+#include "render/base/median.h"
 
 namespace gladstone::inline stereo {
 namespace {
@@ -114,8 +115,7 @@ double find_redundancy(int vectors, double overlap) {
 
 std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points, double redundancy) {
   constexpr int max_rounds = 10;
-  // per_median: ratio of the standard deviation of a normal distribution to its median magnitude
-  constexpr double limit = 3.0, per_median = 1.4826;
+  constexpr double limit = 3.0;  // in standard deviations
   if (points.size() < 4) return std::nullopt;
   std::vector<char> selected(points.size(), 1);
   FittedPlane fit;
@@ -124,10 +124,7 @@ std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points, do
     if (!solved) return std::nullopt;
     std::vector<double> distance(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) distance[i] = std::abs(height_above(solved->plane, points[i]));
-    std::vector<double> sorted = distance;
-    auto const middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    double const largest = limit * per_median * *middle, rounding = 1e-12;  // [m]
+    double const largest = limit * sigma_per_median_deviation * upper_median(distance), rounding = 1e-12;  // [m]
     fit = {solved->plane};
     std::vector<char> next(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {

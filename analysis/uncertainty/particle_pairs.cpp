@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "render/base/median.h"
+
 namespace gladstone::inline uncertainty {
 namespace {
 
@@ -89,18 +91,13 @@ void find_particle_pairs(MatchedWindow const& w, std::vector<ParticleImagePair>&
 void remove_mismatched_pairs(std::vector<ParticleImagePair>& pairs) {
   if (pairs.size() < 3) return;
   std::vector<double> values(pairs.size());
-  auto const median = [&] {
-    auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  };
   Vec2d centre, most;
   for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) {
     std::transform(pairs.begin(), pairs.end(), values.begin(), [&](auto const& p) { return p.disparity.*axis; });
-    double const middle = centre.*axis = median();
+    double const middle = centre.*axis = upper_median(values);
     std::transform(pairs.begin(), pairs.end(), values.begin(),
                    [&](auto const& p) { return std::abs(p.disparity.*axis - middle); });
-    most.*axis = 3.5 * 1.4826 * median();
+    most.*axis = 3.5 * sigma_per_median_deviation * upper_median(values);
   }
   std::erase_if(pairs, [&](ParticleImagePair const& p) {
     return std::abs(p.disparity.x - centre.x) > most.x || std::abs(p.disparity.y - centre.y) > most.y;

@@ -14,15 +14,9 @@
 namespace gladstone::inline vectors {
 namespace {
 
-std::vector<std::size_t> shape_of(GridTable const& table) {
-  std::vector<std::size_t> shape;
-  for (TableAxis const& axis : table.axes) shape.push_back(axis.place_mm.size());
-  return shape;
-}
-
 /// Returns the table with additional first columns x_mm, y_mm (and z_mm), the positions of the nodes.
 VectorTable with_positions(GridTable const& grid) {
-  std::vector<std::size_t> const shape = shape_of(grid);
+  std::vector<std::size_t> const shape = grid.shape();
   VectorTable table;
   table.grid_columns = static_cast<int>(shape.back());
   table.grid_rows = static_cast<int>(shape[shape.size() - 2]);
@@ -73,7 +67,7 @@ void write_netcdf(std::string const& path, GridTable const& grid, FileOrigin con
   }
   for (VectorColumn const& column : grid.columns) {
     std::string const name = '/' + name_without_unit(column);
-    file.write(name, std::span<double const>(column.values), shape_of(grid), cf_unit(column.units), column.description,
+    file.write(name, std::span<double const>(column.values), grid.shape(), cf_unit(column.units), column.description,
                order);
     file.attribute(name, "long_name", column.description);
     axes.name(name, scales);
@@ -104,6 +98,12 @@ constexpr std::array grid_writers{
 };
 
 }  // namespace
+
+std::vector<std::size_t> GridTable::shape() const {
+  std::vector<std::size_t> shape;
+  for (TableAxis const& axis : axes) shape.push_back(axis.place_mm.size());
+  return shape;
+}
 
 std::size_t GridTable::nodes() const {
   std::size_t count = 1;

@@ -22,6 +22,8 @@ struct GridTable {
   /// Quantities, with one value per node; the x index varies fastest; NaN: unknown.
   std::vector<VectorColumn> columns;
 
+  /// Returns the number of nodes along each axis.
+  std::vector<std::size_t> shape() const;
   std::size_t nodes() const;
 };
 

@@ -29,7 +29,7 @@ void write_folder(std::string const& folder, CaseSetup const& loaded, Write cons
 PairCase::PairCase(CameraCase camera, Backend const& device, ReusableParts const& known)
     : camera_(std::move(camera.name)), loaded_(std::move(camera.loaded)) {
   RecordedCase finished = render_case_in_memory(loaded_, *device.renderer, known);
-  outcome_ = judge_case(loaded_, finished.prepared, finished.rendered, finished.frames, *device.renderer);
+  outcome_ = judge_case(loaded_, finished.prepared, finished.rendered, finished.frames);
   store_images(outcome_.levels);
   prepared_ = std::move(finished.prepared);
   rendered_ = std::move(finished.rendered);

@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <new>
-#include <numeric>
 #include <span>
 #include <utility>
+
+#include "render/files/hdf5_handle.h"
 
 namespace gladstone::inline files {
 namespace {
@@ -85,14 +85,10 @@ std::vector<unsigned char> deflate_values(unsigned char const* values, std::size
 
 constexpr std::size_t most_known = 32;  // datasets that are retained for comparison, at most 1 MiB each
 
-std::size_t count_values(std::vector<std::size_t> const& shape) {
-  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
-}
-
 std::vector<DeflatedChunk> deflate_all(unsigned char const* bytes, std::vector<std::size_t> const& shape,
                                        std::vector<std::size_t> const& chunk, std::size_t value_bytes) {
   std::vector<DeflatedChunk> chunks;
-  std::size_t const chunk_values = count_values(chunk);
+  std::size_t const chunk_values = hdf5::product(chunk);
   std::vector<std::size_t> start(shape.size(), 0);
   while (start[0] < shape[0]) {
     // Every chunk is contiguous: it has one value along the axes before the one that is divided, and is whole along
@@ -116,7 +112,7 @@ std::vector<DeflatedChunk> deflate_all(unsigned char const* bytes, std::vector<s
 
 std::vector<std::size_t> chunk_shape(std::vector<std::size_t> const& shape, std::size_t value_bytes) {
   std::vector<std::size_t> chunk = shape;
-  for (std::size_t axis = 0; axis < chunk.size() && count_values(chunk) * value_bytes > max_chunk_bytes;) {
+  for (std::size_t axis = 0; axis < chunk.size() && hdf5::product(chunk) * value_bytes > max_chunk_bytes;) {
     if (chunk[axis] == 1) {
       ++axis;
     } else {
@@ -130,7 +126,7 @@ std::vector<DeflatedChunk> ChunkDeflater::deflate(void const* data, std::vector<
                                                   std::vector<std::size_t> const& chunk, std::size_t value_bytes) {
   auto const* const bytes = static_cast<unsigned char const*>(data);
   if (chunk != shape) return deflate_all(bytes, shape, chunk, value_bytes);
-  std::span<unsigned char const> const values(bytes, count_values(shape) * value_bytes);
+  std::span<unsigned char const> const values(bytes, hdf5::product(shape) * value_bytes);
   std::vector<std::size_t> const start(shape.size(), 0);
   for (Known const& known : known_)
     if (std::equal(values.begin(), values.end(), known.values.begin(), known.values.end()))

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "render/files/image_codecs.h"
 #include "render/files/input_file.h"

@@ -58,9 +58,9 @@ double cone_reach(double way, double half_size, double stop) {
 
 /// Returns the extent of the mid-plane that the light cones of the whole view cross [m].
 Vec2d crossed_extent(Setup const& setup, double way) {
-  double const stop = setup.imaging().entrance_pupil / 2;
-  double const beyond =
-      2 * (cone_reach(way, setup.dot_diameter() / 2, stop) + way * DeflectionTableLayout::default_aim_distance * stop);
+  ImagingGeometry const imaging = setup.imaging();
+  double const beyond = 2 * (cone_reach(way, setup.dot_diameter() / 2, imaging.entrance_pupil / 2) +
+                             way * DeflectionTableLayout::default_aim_distance(imaging));
   Vec2d const extent = setup.target_extent();
   return {(1 - way) * extent.x + beyond, (1 - way) * extent.y + beyond};
 }

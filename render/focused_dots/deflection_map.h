@@ -18,9 +18,9 @@ TableState table_state(Scene const& scene);
 /// cone only. The lattices cover the cones of FocusedDots::dots() and of the given sources, as far as they are within
 /// the medium.
 struct DeflectionTableLayout {
-  /// Default for the largest distance of an aim point from the pupil's centre that the table covers, in radii of the
-  /// stop.
-  static constexpr double default_aim_distance = 0.25;
+  /// Returns the default for the largest distance of an aim point from the pupil's centre that the table covers: a
+  /// quarter of the stop's radius [m].
+  static double default_aim_distance(ImagingGeometry const& imaging) { return 0.25 * imaging.entrance_pupil / 2; }
 
   DeflectionTable table;  ///< the table without values
   TableState state = TableState::no_sources;

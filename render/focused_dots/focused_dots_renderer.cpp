@@ -82,8 +82,7 @@ Rendering FocusedDotsRenderer::render(Scene const& scene, RenderPlan const& plan
 
 Rendering render_within_table(Scene const& scene, RenderPlan const& plan,
                               std::function<TracingPass(double largest_aim_distance)> const& trace) {
-  double room =
-      std::max(DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2, plan.pupil_margin);
+  double room = std::max(DeflectionTableLayout::default_aim_distance(scene.imaging), plan.pupil_margin);
   while (true) {
     TracingPass pass = trace(room);
     if (pass.largest_aim_distance <= room) return pass.finish();

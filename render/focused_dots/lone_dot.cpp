@@ -24,7 +24,7 @@ LoneDot::LoneDot(FocusedDots const& all, Vec2d place, int side)
     : dot_(select_place(all.dots(), place)), dots_(all.with_dots(dot_)), side_(side) {
   Scene const& scene = dots_.scene();
   Vec2d const centre = dot_.centre[0];
-  double room = DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2;
+  double room = DeflectionTableLayout::default_aim_distance(scene.imaging);
   do {
     table_ = std::make_unique<DeflectionMap>(dots_, DeflectionTableLayout(dots_, dot_, room));
     owned_ = std::make_unique<OwnedDotModel>(dots_, dot_, table_->table(), true);

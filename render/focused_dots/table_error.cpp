@@ -173,8 +173,7 @@ TableError measure_table_error(FocusedDots const& dots) {
 
 double table_seconds(FocusedDots const& dots) {
   Scene const& scene = dots.scene();
-  DeflectionTableLayout const layout(dots, scene.dots,
-                                     DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
+  DeflectionTableLayout const layout(dots, scene.dots, DeflectionTableLayout::default_aim_distance(scene.imaging));
   if (!layout.wanted()) return 0;
   double const of_table = 4.0 * static_cast<double>(layout.table.fours());
   double const measured = static_cast<double>(place_count) * LoneDot::sample_count * LoneDot::largest_sample /
@@ -185,8 +184,7 @@ double table_seconds(FocusedDots const& dots) {
 double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
   constexpr double a_node = 0.1e-6;  // time of the table look-ups at one node of a light cone [s]
   Scene const& scene = dots.scene();
-  DeflectionTableLayout const layout(dots, scene.dots,
-                                     DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
+  DeflectionTableLayout const layout(dots, scene.dots, DeflectionTableLayout::default_aim_distance(scene.imaging));
   if (layout.state == TableState::no_medium) return 0;
   OwnedDotModel const owned(dots, scene.dots, layout.table, false);
   double const nodes = static_cast<double>(owned.model.cone.count) * owned.model.places.count;

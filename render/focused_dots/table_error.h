@@ -16,8 +16,8 @@ namespace gladstone::inline focused_dots {
 /// target, of adjacent squares. Positions that the table does not cover are ignored.
 TableError measure_table_error(FocusedDots const& dots);
 
-/// Number of rays per dot that plan_rays_by_table() chooses, and that for a refined table.
-inline constexpr std::uint64_t initial_table_rays = 32, refined_table_rays = 512;
+inline constexpr std::uint64_t initial_table_rays = 32;   ///< rays per dot that correct a table of usual fineness
+inline constexpr std::uint64_t refined_table_rays = 512;  ///< rays per dot that correct a refined table
 
 /// Completes a plan that has a step with the number of rays per dot that correct the table, and the fineness of table
 /// and rules.

@@ -109,4 +109,12 @@ GLADSTONE_HD RayStatus pass_element(CameraElement<T> const& element, Ray<T>& ray
   return element.visit([&](auto const& held) { return pass(held, ray, account); });
 }
 
+/// Traces a ray through an element, ignoring vignetting.
+/// @return false if the ray is lost
+GLADSTONE_HD inline bool trace_ignoring_vignetting(CameraElement<double> const& element, Ray<double>& ray) {
+  RayAccount<double> account;
+  RayStatus const status = element.visit([&](auto const& held) { return held.interact(ray, account); });
+  return status == RayStatus::alive || status == RayStatus::vignetted;
+}
+
 }  // namespace gladstone::inline optics

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 #include "render/base/error.h"
 #include "render/optics/axial_beam.h"

@@ -82,14 +82,6 @@ struct FilledStop {
 
 namespace detail {
 
-/// Traces a ray through an element, ignoring vignetting.
-/// @return false if the ray is lost
-GLADSTONE_HD inline bool trace_ignoring_vignetting(CameraElement<double> const& element, Ray<double>& ray) {
-  RayAccount<double> account;
-  RayStatus const status = element.visit([&](auto const& held) { return held.interact(ray, account); });
-  return status == RayStatus::alive || status == RayStatus::vignetted;
-}
-
 /// Intersects a ray with the stop, through an optional medium and ignoring vignetting.
 /// @param place  receives the intersection in the stop's frame [m]
 /// @return false if the ray is lost before the stop

@@ -12,14 +12,6 @@ namespace {
 
 constexpr int rim_points = 8;  // points on the edge of the stop by which the entrance pupil is found
 
-/// Traces a ray through an element, ignoring vignetting.
-/// @return false if the ray is lost
-bool go_on(CameraElement<double> const& element, Ray<double>& ray) {
-  RayAccount<double> account;
-  RayStatus const status = element.visit([&](auto const& held) { return held.interact(ray, account); });
-  return status == RayStatus::alive || status == RayStatus::vignetted;
-}
-
 /// Returns true for lenslets. They form many small images of the stop; the image position of a point is that of the
 /// main lens.
 bool divides_light(CameraElement<double> const& element) {
@@ -59,7 +51,7 @@ std::optional<Vec2d> Camera::in_stop(Vec3d point, Vec2d aim) const {
   Ray<double> ray = towards(point, aim);
   auto const last = static_cast<std::size_t>(stop);
   for (std::size_t i = 0; i < last; ++i) {
-    if (!go_on(elements[i], ray)) return std::nullopt;
+    if (!trace_ignoring_vignetting(elements[i], ray)) return std::nullopt;
   }
   Vec2d place;
   bool const met = elements[last].visit([&](auto const& held) { return held.meet(ray, place); });
@@ -73,7 +65,7 @@ std::optional<Camera::Sight> Camera::sight(Vec3d point, Vec2d aim) const {
     if (divides_light(elements[i])) continue;
     bool const met = static_cast<int>(i) != stop ||
                      elements[i].visit([&](auto const& held) { return held.meet(ray, seen.in_stop); });
-    if (!met || !go_on(elements[i], ray)) return std::nullopt;
+    if (!met || !trace_ignoring_vignetting(elements[i], ray)) return std::nullopt;
   }
   Vec2d place;
   if (!sensor.meet(ray, place)) return std::nullopt;

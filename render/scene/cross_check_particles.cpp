@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "render/scene/particle_scene.h"
 #include "render/scene/read_setup.h"
 
 namespace gladstone::inline scene {

@@ -8,7 +8,6 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/ideal_projection.h"
 #include "render/scene/light_through_lens.h"
 #include "render/scene/read_setup.h"
 

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "render/base/warning.h"
 #include "render/scene/renderer.h"
 
 namespace gladstone::inline scene {

@@ -52,7 +52,7 @@ struct Rendering {
   std::vector<std::size_t> left;  ///< fallback dots: without truth or light here, to be rendered by another renderer
   std::optional<RenderingAccuracy> accuracy;  ///< empty: not measured
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
-  std::string device;                         ///< device that rendered it; empty: that of the renderer
+  std::string device;                         ///< device that rendered it, set by render()
 
   /// Moves the light of both images to `in_place`, for a device that renders in host memory.
   void store_light_in_place() {

@@ -12,12 +12,6 @@
 namespace gladstone::inline benchmarks {
 namespace {
 
-bool is_of_curve(std::string const& name) {
-  std::vector<BenchmarkEstimator> const& ours = benchmark_estimators();
-  return std::any_of(ours.begin(), ours.end(),
-                     [&](BenchmarkEstimator const& one) { return one.name == name && one.of_curve; });
-}
-
 /// Returns the estimators except those that are only points of the curve of settings.
 std::vector<std::string> codes_of(BenchmarkResult const& result) {
   std::vector<std::string> codes;

@@ -34,13 +34,6 @@ nlohmann::ordered_json mean_json(SeedMean const& mean) {
 
 using namespace plot;
 
-/// Returns true for the default and the estimators that are only points of the curve of settings.
-bool is_on_curve(std::string const& name) {
-  for (BenchmarkEstimator const& one : benchmark_estimators())
-    if (one.name == name) return one.of_curve || name == "default";
-  return false;
-}
-
 /// Noise and gain of one estimator.
 struct Point {
   std::string name;
@@ -72,7 +65,8 @@ Figure make_noise_against_gain(std::vector<Point> const& points) {
   panel.y = {.label = "rms error at 5 % noise, uniform displacement [px]", .low = 0};
   panel.legend.place = LegendPlace::top_left;
   std::vector<Point> curve, others;
-  for (Point const& point : points) (is_on_curve(point.name) ? curve : others).push_back(point);
+  for (Point const& point : points)
+    (point.name == "default" || is_of_curve(point.name) ? curve : others).push_back(point);
   std::sort(curve.begin(), curve.end(), [](Point const& a, Point const& b) { return a.gain < b.gain; });
   Layer line{.columns = {{}, {}}, .colour = house_colour(0), .name = "our default with other last windows"};
   line.marker = 1;

@@ -122,6 +122,12 @@ std::vector<BenchmarkEstimator> const& benchmark_estimators() {
   return all;
 }
 
+bool is_of_curve(std::string const& name) {
+  std::vector<BenchmarkEstimator> const& ours = benchmark_estimators();
+  return std::any_of(ours.begin(), ours.end(),
+                     [&](BenchmarkEstimator const& one) { return one.name == name && one.of_curve; });
+}
+
 std::vector<std::string> benchmark_case_files(BenchmarkOptions const& options) {
   std::vector<std::string> paths;
   for (BenchmarkCase const& one : wanted_cases(options))

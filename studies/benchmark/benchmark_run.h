@@ -23,6 +23,9 @@ struct BenchmarkEstimator {
 /// coarse to fine.
 std::vector<BenchmarkEstimator> const& benchmark_estimators();
 
+/// Returns true for the names of our estimators that are only points of the curve of settings.
+bool is_of_curve(std::string const& name);
+
 /// Vectors of external software: a folder of files named after the cases, or one such file.
 struct ForeignVectors {
   std::string name, path;

@@ -24,7 +24,6 @@
 namespace gladstone::inline cases {
 namespace {
 
-constexpr double place_tolerance_px = 1e-3;  // rms error of the dot positions beyond which a warning is issued
 constexpr std::size_t dots_traced_again = 64;
 constexpr int dots_for_a_fit = 12;  // minimum number of dots per plane for a homography and its check
 
@@ -67,12 +66,12 @@ void warn_of_place_errors(RenderedCalibration& rendered) {
     worst = plane.place_error.rms_px;
     at = plane.z;
   }
-  if (worst <= place_tolerance_px) return;
+  if (worst <= truth_tolerance_px) return;
   warn(rendered.warnings,
        {WarningCode::low_accuracy, "render.rays_per_dot",
         fmt::format("{} rays per dot cause errors of {:.2g} px rms in the positions of the dots on Z = {:.6g} mm (more "
                     "than {:g} px); increase render.rays_per_dot, or use a larger f-number",
-                    rendered.rays, worst, at / unit::millimetre, place_tolerance_px)});
+                    rendered.rays, worst, at / unit::millimetre, truth_tolerance_px)});
 }
 
 /// Returns the camera with an independent noise seed for each frame.
@@ -113,7 +112,7 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
     rendered.rays = std::max(rendered.rays, plane.rays);
     plane.statuses = traced.statuses;
     plane.place_error = place_error(plane.scene, plan, renderer);
-    rendered.device = traced.device.empty() ? renderer.device() : traced.device;
+    rendered.device = traced.device;
     brightest = std::max(brightest, *std::max_element(plane.light.begin(), plane.light.end()));
     rendered.planes.push_back(std::move(plane));
   }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "render/base/warning.h"
-#include "render/files/hdf5_file.h"
 #include "studies/case/case.h"
 
 namespace gladstone::inline cases {

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "render/base/units.h"
 #include "render/files/text_encoding.h"
 #include "render/focused_dots/focused_dots.h"

@@ -3,7 +3,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "render/base/warning.h"
 #include "render/scene/ray_budget.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"

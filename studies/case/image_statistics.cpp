@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "render/base/median.h"
 #include "render/files/image_file.h"
 
 namespace gladstone::inline cases {
@@ -37,12 +39,7 @@ std::vector<Neighbourhood> neighbourhoods(Image<double> const& image) {
   return all;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double median(std::vector<double> values) { return values.empty() ? std::nan("") : upper_median(std::move(values)); }
 
 /// Returns the heights above the background of all local maxima that exceed a third of the largest height.
 std::vector<double> peak_heights(Image<double> const& image, double background, double sign) {

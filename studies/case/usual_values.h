@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "render/base/warning.h"
 #include "render/setup/setup_table.h"
 

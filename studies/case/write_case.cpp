@@ -73,18 +73,8 @@ RecordedCase render_case_in_memory(CaseSetup& loaded, Renderer& renderer, Reusab
   return finished;
 }
 
-RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
-  OutputFolder output(folder, case_content());
-  RecordedCase finished = render_case_in_memory(loaded, renderer);
-  output.fill([&](std::string const& place) {
-    write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
-  });
-  output.commit();
-  return finished;
-}
-
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                       RecordedFrames const& frames, Renderer const& renderer) {
+                       RecordedFrames const& frames) {
   CaseOutcome outcome;
   Warnings& warnings = outcome.warnings = prepared.warnings;
   if (loaded.setup.render.precision == Precision::single) {
@@ -98,7 +88,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   outcome.table_error = accuracy.table;
   outcome.image_error_levels = accuracy.image_levels;
   if (accuracy.table) warn_of_table(warnings, *accuracy.table);
-  outcome.device = rendering.device.empty() ? renderer.device() : rendering.device;
+  outcome.device = rendering.device;
   // If the rays are chosen again, they are chosen for the same exposure, so "auto" remains.
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
@@ -147,10 +137,15 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   return summary;
 }
 
-nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                          RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
-  return write_case(loaded, prepared, rendered, frames, judge_case(loaded, prepared, rendered, frames, renderer),
-                    folder);
+WrittenCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
+  OutputFolder output(folder, case_content());
+  WrittenCase written{render_case_in_memory(loaded, renderer), {}};
+  auto const& [prepared, rendered, frames] = static_cast<RecordedCase const&>(written);
+  written.outcome = judge_case(loaded, prepared, rendered, frames);
+  output.fill(
+      [&](std::string const& place) { write_case(loaded, prepared, rendered, frames, written.outcome, place); });
+  output.commit();
+  return written;
 }
 
 }  // namespace gladstone::inline cases

@@ -10,7 +10,6 @@
 #include "render/base/warning.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/renderer.h"
-#include "render/sensor/detector.h"
 #include "studies/case/case.h"
 
 namespace gladstone::inline cases {
@@ -46,9 +45,6 @@ void hash_inputs(CaseSetup& loaded);
 /// Renders a case in memory.
 RecordedCase render_case_in_memory(CaseSetup& loaded, Renderer& renderer, ReusableParts const& known = {});
 
-/// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml and summary.json.
-RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
-
 /// Truth of dots at side faces of the medium (side_faces.h) in a rendering by the fast renderer.
 struct SideFaceAccuracy {
   std::size_t dots = 0;                  ///< number of dots at side faces
@@ -77,15 +73,20 @@ struct CaseOutcome : RenderedOutcome {
 /// Determines accuracy, grey levels and warnings of a rendered case, logs its warnings, and stores the values used for
 /// "auto" in the setup.
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                       RecordedFrames const& frames, Renderer const& renderer);
+                       RecordedFrames const& frames);
 
-/// Writes the files of a rendered case.
+/// Writes the files of a rendered case: reference.tif, flow.tif, truth.h5, setup.toml and summary.json.
 /// @return the contents of summary.json
 /// @throws DataError if a file that the setup names has changed since it was hashed
 nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                           RecordedFrames const& frames, CaseOutcome const& outcome, std::string const& folder);
-/// Judges a case by judge_case() and writes its files.
-nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                          RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
+
+/// A rendered case with the outcome that its files contain.
+struct WrittenCase : RecordedCase {
+  CaseOutcome outcome;
+};
+
+/// Renders a setup into a CASE folder by write_case().
+WrittenCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
 }  // namespace gladstone::inline cases

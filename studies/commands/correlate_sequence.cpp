@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
+#include "render/files/file_pattern.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
 #include "studies/compare/sequence.h"

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "render/base/error.h"
+#include "render/base/median.h"
 #include "render/base/units.h"
 
 namespace gladstone::inline compare {
@@ -28,12 +29,6 @@ constexpr double least_known = 0.2;       // relative standard error of a focal 
 // relative difference from the setup's focal length that causes a warning; nominal focal lengths of lenses hold to 2 %
 constexpr double other_focal_length = 0.02;
 constexpr double square_pixels = 0.01;  // relative difference of fx and fy that causes a warning
-
-double median_of(std::vector<double> values) {
-  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double degrees(double sine) { return std::asin(std::clamp(sine, -1.0, 1.0)) * 180 / pi; }
 
@@ -179,7 +174,7 @@ class CalibrationFit {
   void remove_outliers() {
     std::vector<double> sizes;
     for (Vec2d const residual : pinhole().residual_px) sizes.push_back(length(residual));
-    double const deviation = median_of(sizes) / 1.1774;  // ratio for the median of a Rayleigh distribution
+    double const deviation = upper_median(sizes) / 1.1774;  // ratio for the median of a Rayleigh distribution
     double const limit = std::max(outlier_deviations * deviation, least_outlier_px);
     PlateDots kept = dots_;
     kept.pixel.clear();

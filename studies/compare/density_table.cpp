@@ -34,12 +34,6 @@ void add_truth(GridTable& table, std::vector<double> const& density, std::vector
   add_column(table, "error_kg_m3", "kg/m^3", "density minus true density", std::move(error));
 }
 
-std::vector<std::size_t> shape_of(GridTable const& table) {
-  std::vector<std::size_t> shape;
-  for (TableAxis const& axis : table.axes) shape.push_back(axis.place_mm.size());
-  return shape;
-}
-
 }  // namespace
 
 GridTable make_density_table(Reconstruction const& reconstruction) {
@@ -108,10 +102,9 @@ void write_grid_datasets(Hdf5Writer& file, Hdf5Axes& axes, GridTable const& tabl
     std::string const name = '/' + column.name;
     if (column.is_code) {
       std::vector<std::int64_t> const codes(column.values.begin(), column.values.end());
-      file.write(name, std::span<std::int64_t const>(codes), shape_of(table), column.units, column.description, order);
+      file.write(name, std::span<std::int64_t const>(codes), table.shape(), column.units, column.description, order);
     } else {
-      file.write(name, std::span<double const>(column.values), shape_of(table), column.units, column.description,
-                 order);
+      file.write(name, std::span<double const>(column.values), table.shape(), column.units, column.description, order);
     }
     axes.name(name, scales);
   }
@@ -144,7 +137,7 @@ ExportedDensity load_density_for_export(std::string const& path) {
     std::string const name = '/' + axis + "_mm";
     if (file.has(name)) table.axes.push_back({axis, file.read(name), file.attribute_of(name, "description")});
   }
-  std::vector<std::size_t> const shape = shape_of(table);
+  std::vector<std::size_t> const shape = table.shape();
   for (std::string const& name : file.dataset_names()) {
     if (shape.size() < 2 || file.shape('/' + name) != shape) continue;
     std::string const units = file.attribute_of('/' + name, "units");

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "render/base/median.h"
 #include "render/base/parallel.h"
 #include "render/light/flow_path.h"
 
@@ -24,9 +25,7 @@ class SheetPoints {
     parallel_for(places_px.size(), [&](std::size_t i) { seen_[i] = scene.camera.unproject(places_px[i], plane_); });
     for (auto const& seen : seen_) place_.push_back(seen ? seen->place : Vec2d{});
     PivSetup const& piv = *scene.setup.piv;
-    std::vector<double> sizes = scene.particles.diameter;
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-    diameter_ = sizes[sizes.size() / 2];
+    diameter_ = upper_median(scene.particles.diameter);
     velocity_ = {piv.flow.flow, piv.particles.response_time(diameter_), 0.01 * piv.flow.dt};
   }
 

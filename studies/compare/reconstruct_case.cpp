@@ -83,9 +83,9 @@ std::vector<double> compute_truth(Reconstruction const& result, DisplacementFiel
 }  // namespace
 
 Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device,
-                                KnownMeasurement known) {
+                                CaseSetup const* setup, Comparison const* comparison) {
   ReconstructedFiles files = find_files(place, options.vectors);
-  CaseSetup const loaded = known.setup ? known.setup->copy() : load_case_setup(files.setup, {});
+  CaseSetup const loaded = setup ? setup->copy() : load_case_setup(files.setup, {});
   require_experiment(loaded.setup, bos_experiment, files.setup,
                      "is not a BOS setup (density follows from the displacement of a background); use a setup with "
                      "experiment = \"bos\"");
@@ -105,8 +105,8 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
     comparing.vectors = options.vectors;
     comparing.reuse = true;
     std::optional<Comparison> computed;
-    if (!known.comparison) known.comparison = &computed.emplace(compare_case(place, device, comparing, &loaded));
-    result.budget = compute_density_budget(*known.comparison, result, loaded.setup, window_px, options);
+    if (!comparison) comparison = &computed.emplace(compare_case(place, device, comparing, &loaded));
+    result.budget = compute_density_budget(*comparison, result, loaded.setup, window_px, options);
   } else if (options.budget) {
     throw DataError(ErrorCode::missing_file, place,
                     "has no truth.h5, without which the causes of the error are unknown; remove --budget, or "

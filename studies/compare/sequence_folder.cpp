@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "render/files/output_destination.h"
 #include "render/files/output_file.h"
 #include "studies/case/json_text.h"
+#include "studies/case/rendered_sequence_folder.h"
 #include "studies/case/warning_json.h"
 #include "studies/case/warning_log.h"
 
@@ -22,14 +22,6 @@ namespace gladstone::inline compare {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Returns true if the folder contains visible files.
-bool contains_files(std::string const& folder) {
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (!entry->path().filename().string().starts_with('.')) return true;
-  return false;
-}
 
 /// Returns the name of a state in sequence.json.
 char const* state_name(PairState state) {
@@ -75,7 +67,7 @@ SequenceFolder::SequenceFolder(std::string const& path) {
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_directory(path_, error))
     throw OutputError(path, "is a file (a sequence has one file of vectors per pair); name a folder");
-  if (contains_files(path_) && !fs::exists(file(sequence_file::state), error))
+  if (contains_visible_files(path_) && !fs::exists(file(sequence_file::state), error))
     throw OutputError(path, "contains other files (it has no sequence.json); name a new folder");
   fs::create_directories(path_, error);
   if (error) place.fail("cannot be created", error.value());

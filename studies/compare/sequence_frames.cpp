@@ -11,6 +11,7 @@
 
 #include "render/base/error.h"
 #include "render/base/text.h"
+#include "render/files/file_pattern.h"
 #include "studies/compare/frame_numbers.h"
 
 namespace gladstone::inline compare {

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "render/files/file_pattern.h"
 #include "render/files/image_pages.h"
 
 namespace gladstone::inline compare {

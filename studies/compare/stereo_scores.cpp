@@ -13,7 +13,6 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
-#include "studies/case/json_text.h"
 
 namespace gladstone::inline compare {
 namespace {

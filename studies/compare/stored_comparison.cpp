@@ -1,6 +1,5 @@
 #include "studies/compare/stored_comparison.h"
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 

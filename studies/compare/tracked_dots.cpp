@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/tracking/gaussian_window.h"
+#include "render/base/median.h"
 
 namespace gladstone::inline compare {
 namespace {
@@ -14,10 +16,7 @@ constexpr double least_light = 0.1;  // minimum light of a dot, relative to the 
 double median_of_positive(std::span<double const> values) {
   std::vector<double> positive;
   std::copy_if(values.begin(), values.end(), std::back_inserter(positive), [](double value) { return value > 0; });
-  if (positive.empty()) return 0;
-  auto const middle = positive.begin() + static_cast<std::ptrdiff_t>(positive.size() / 2);
-  std::nth_element(positive.begin(), middle, positive.end());
-  return *middle;
+  return upper_median(std::move(positive));
 }
 
 }  // namespace

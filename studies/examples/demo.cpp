@@ -12,7 +12,6 @@
 #include "render/base/units.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
-#include "render/files/source_files.h"
 #include "render/planning.h"
 #include "studies/case/case.h"
 #include "studies/case/shared_folder.h"
@@ -94,18 +93,17 @@ SeedFigure4Instant figure_instant(std::string const& heading, FieldMap const& fi
   return instant;
 }
 
-/// Correlates the frames of a rendered case in memory and writes its vectors.
+/// Correlates the frames of a case in memory and writes its vectors.
 /// @param place  folder of the case
-Measurement correlate_instant(CaseSetup const& loaded, RecordedCase const& made, std::string const& place,
+Measurement correlate_instant(CaseSetup const& loaded, WrittenCase const& made, std::string const& place,
                               Backend const& device) {
   StoredFrames const& levels = *made.frames.levels;
   HostFrames const frames(levels.reference(), levels.flow());
   Measurement measured = correlate_frames(in_case(place, case_file::reference), in_case(place, case_file::flow), frames,
                                           loaded.correlate, device);
   FileOrigin origin{"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, measured.device};
-  FramePair<std::uint16_t> const integers = levels.integers();
-  origin.sources.add_known("reference", pixel_sha256(integers.reference));
-  origin.sources.add_known("flow", pixel_sha256(integers.flow));
+  origin.sources.add_known("reference", made.outcome.reference_sha256);
+  origin.sources.add_known("flow", made.outcome.flow_sha256);
   write_vectors(in_case(place, case_file::vectors), measured.field, origin);
   return measured;
 }
@@ -176,7 +174,7 @@ std::string run_demo(std::string const& folder, Backend const& device) {
     CaseSetup loaded = load_instant(shared, instant, finenesses[0], rays_of_case);
     paper = loaded.setup;
     refuse_case_over_inputs(place, loaded.document.file_names());
-    RecordedCase const made = render_to_folder(loaded, *device.renderer, place);
+    WrittenCase const made = render_to_folder(loaded, *device.renderer, place);
     spdlog::info("{}: correlating", instant.name);
     Measurement const measured = correlate_instant(loaded, made, place, device);
     spdlog::info("{}: {} vectors in {:.1f} s; comparing with truth and theory", instant.name, measured.field.size(),

@@ -26,7 +26,6 @@ struct CurvePanel {
   std::vector<Curve> curves;
 };
 
-constexpr char const* signal = "signal_px";
 constexpr char const* error_label = "rms per component [px]";
 
 /// Creates curves and accumulates the range of their values and the kind of their points.
@@ -136,7 +135,7 @@ std::optional<Figure> make_error_curves(StudyCells const& cells, std::size_t axi
     std::size_t colour = 0;
     for (ErrorMeasure const& error : errors)
       panel.curves.push_back(make(error.name, house_colour(colour++), choices.front(), error.measure));
-    panel.curves.push_back(make("signal: ray truth itself", "#404040", choices.front(), signal, true));
+    panel.curves.push_back(make("signal: ray truth itself", "#404040", choices.front(), signal_measure, true));
     panels.push_back(std::move(panel));
   } else {
     for (std::size_t k = 0; k < std::min<std::size_t>(2, errors.size()); ++k) {
@@ -145,7 +144,7 @@ std::optional<Figure> make_error_curves(StudyCells const& cells, std::size_t axi
         panel.curves.push_back(make(choices[i].name, house_colour(i), choices[i], errors[k].measure));
       }
       for (std::size_t i = 0; i < choices.size(); ++i) {
-        panel.curves.push_back(make("", house_colour(i), choices[i], signal, true));
+        panel.curves.push_back(make("", house_colour(i), choices[i], signal_measure, true));
       }
       panels.push_back(std::move(panel));
     }

@@ -19,12 +19,14 @@ std::optional<Figure> make_budget(StudyCells const& cells, std::size_t axis, Stu
 std::optional<Figure> make_repeats(StudyCells const& points, std::size_t axis);
 /// Returns a figure of the fraction of the errors that the estimated uncertainty covers.
 std::optional<Figure> make_coverage(StudyCells const& cells, std::size_t axis);
-/// Returns a figure of one measure against another, with one point per case.
-std::optional<Figure> make_case_points(StudyCells const& cells, std::string const& x_measure,
-                                       std::string const& y_measure);
+/// Returns a figure of the error against the signal, with one point per case.
+std::optional<Figure> make_case_points(StudyCells const& cells);
 
 /// Common parts of the figures of a study.
 namespace study_drawing {
+
+/// rms of the ray truth.
+inline constexpr char const* signal_measure = "signal_px";
 
 /// rms error of the measurement against one reference.
 struct ErrorMeasure {

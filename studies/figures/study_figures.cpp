@@ -160,10 +160,7 @@ std::optional<Figure> StudyFigureMaker::make_map(std::size_t x_axis, std::size_t
   return make_error_map(map_cells_, x_axis, y_axis);
 }
 
-std::optional<Figure> StudyFigureMaker::make_case_points(std::string const& x_measure,
-                                                         std::string const& y_measure) const {
-  return figures::make_case_points(cells_, x_measure, y_measure);
-}
+std::optional<Figure> StudyFigureMaker::make_case_points() const { return figures::make_case_points(cells_); }
 
 std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table,
                                     std::vector<std::string> const& formats) {

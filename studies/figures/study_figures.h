@@ -27,7 +27,7 @@ class StudyFigureMaker {
   std::optional<Figure> make_repeats(std::size_t axis) const;  ///< nullopt for a study without repeats
   std::optional<Figure> make_coverage(std::size_t axis) const;
   std::optional<Figure> make_map(std::size_t x_axis, std::size_t y_axis) const;
-  std::optional<Figure> make_case_points(std::string const& x_measure, std::string const& y_measure) const;
+  std::optional<Figure> make_case_points() const;
 
  private:
   StudyCells cells_, map_cells_;

@@ -130,7 +130,7 @@ std::optional<Reconstruction> reconstruct_compared(ReportOptions const& options,
   density.vectors = options.vectors;
   if (!options.conventions.empty()) density.conventions = options.conventions;
   density.budget = true;
-  return reconstruct_case(options.source, density, device, {compared.setup.get(), &compared});
+  return reconstruct_case(options.source, density, device, compared.setup.get(), &compared);
 }
 
 /// Adds the errors, their causes and the estimated uncertainty.

@@ -7,7 +7,6 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/frame_pair.h"
 #include "render/files/source_files.h"
-#include "render/scene/setup.h"
 #include "studies/report/report.h"
 
 namespace gladstone::inline report {

@@ -108,7 +108,7 @@ std::optional<Reconstruction> reconstruct_measured(ReportOptions const& options,
   ReconstructOptions density = *options.density;
   density.vectors = options.vectors;
   if (!options.conventions.empty()) density.conventions = options.conventions;
-  if (mean.count == 1) return reconstruct_case(options.source, density, device, {.setup = &loaded});
+  if (mean.count == 1) return reconstruct_case(options.source, density, device, &loaded);
   Reconstruction result = reconstruct_density(mean.field, loaded.setup, loaded.correlate.window_px.back(), density);
   log_warnings(result.warnings);
   return result;

@@ -137,7 +137,7 @@ void add_charts(ReportPage& page, StudyView const& study) {
       add_figure(maps, fmt::format("{}, {}", maker.title(axes[i]), maker.title(axes[j])),
                  maker.make_map(axes[j], axes[i]));
   }
-  add_figure(points, "error and signal", maker.make_case_points("signal_px", study.main));
+  add_figure(points, "error and signal", maker.make_case_points());
   ReportSection errors{"Error over the axes", {}}, causes{"Causes of error", {}}, uncertainty{"Uncertainty", {}};
   std::string const& extremes = page.findings.front();
   add_chart(errors, "curves", "Error over an axis", extremes, over_axes(&StudyFigureMaker::make_errors));

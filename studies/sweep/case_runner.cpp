@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -197,7 +196,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   if (folder) {
     rendered.seconds = result.seconds_render;
     folder->fill([&](std::string const& place) {
-      CaseOutcome const outcome = judge_case(loaded, prepared, rendered, frames, *device_.renderer);
+      CaseOutcome const outcome = judge_case(loaded, prepared, rendered, frames);
       write_case(loaded, prepared, rendered, frames, outcome, place);
       kept_frames.add_known("reference", outcome.reference_sha256);
       kept_frames.add_known("flow", outcome.flow_sha256);

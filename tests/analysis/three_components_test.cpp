@@ -6,7 +6,6 @@
 
 #include <bit>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <set>
@@ -26,12 +25,11 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 class ThreeComponents : public FolderFixture {
  protected:
-  std::string path(std::string const& name) const { return in_folder(name); }
   std::string write(std::string const& name, ThreeComponentField const& components = field()) const {
     FileOrigin origin;
     origin.filetype = "gladstone three components";
-    write_three_components(path(name), components, origin);
-    return path(name);
+    write_three_components(in_folder(name), components, origin);
+    return in_folder(name);
   }
   /// Two rows of three nodes with numbers that have no short decimal representation; the fifth is not determined, the
   /// sixth rejected.
@@ -164,7 +162,7 @@ TEST_F(ThreeComponents, VtkImageComesBack) {
 TEST_F(ThreeComponents, AreReadFromTheFileOfStereo) {
   FileOrigin origin;
   origin.filetype = "gladstone stereo";
-  Hdf5Writer file(path("w.h5"), origin);
+  Hdf5Writer file(in_folder("w.h5"), origin);
   ThreeComponentField const all = field();
   auto const put = [&](char const* name, std::vector<double> const& values) {
     file.write(name, std::span<double const>(values), {values.size()}, "1", "of a test", "value");
@@ -185,8 +183,8 @@ TEST_F(ThreeComponents, AreReadFromTheFileOfStereo) {
   file.attribute("/", "sheet_slope_x", 0.25);
   file.attribute("/", "sheet_slope_y", -0.5);
   file.close();
-  ASSERT_TRUE(is_three_component_file(path("w.h5")));
-  ThreeComponentField const back = read_three_components(path("w.h5"));
+  ASSERT_TRUE(is_three_component_file(in_folder("w.h5")));
+  ThreeComponentField const back = read_three_components(in_folder("w.h5"));
   EXPECT_EQ(back.status, all.status);
   for (int axis = 0; axis < 3; ++axis) {
     expect_equal(component(back.displacement_mm, axis), component(all.displacement_mm, axis), "displacement");

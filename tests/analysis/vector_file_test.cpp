@@ -5,16 +5,15 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "analysis/vectors/vector_readers/text_rows.h"
 #include "render/base/error.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
@@ -22,33 +21,17 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-class VectorFiles : public ::testing::Test {
+class VectorFiles : public FolderFixture {
  protected:
-  VectorFiles() {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("gladstone_vector_file_test_" + std::to_string(::getpid()) + "_" +
-                                                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~VectorFiles() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(std::string const& name) const { return (folder_ / name).string(); }
-  std::string file(std::string const& name, std::string const& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
-  }
   /// Returns code and place of the error when a file is read.
   std::string problem(std::string const& text) const {
     try {
-      read_vectors(file("bad.csv", text));
+      read_vectors(write("bad.csv", text));
     } catch (DataError const& error) {
       return code_and_place(error);
     }
     return "no error";
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 FileOrigin origin() {
@@ -100,12 +83,12 @@ void expect_equal(DisplacementField const& a, DisplacementField const& b) {
 
 // 17 significant digits reproduce every double exactly.
 TEST_F(VectorFiles, CsvComesBackExactly) {
-  write_vectors(path("v.csv"), small_grid(), origin());
-  VectorFile const back = read_vectors(path("v.csv"));
+  write_vectors(in_folder("v.csv"), small_grid(), origin());
+  VectorFile const back = read_vectors(in_folder("v.csv"));
   EXPECT_EQ(back.format, "gladstone");
   EXPECT_FALSE(back.foreign);
   expect_equal(small_grid(), back.field);
-  std::ifstream csv(path("v.csv"));
+  std::ifstream csv(in_folder("v.csv"));
   std::string header;
   std::getline(csv, header);
   EXPECT_EQ(
@@ -114,8 +97,8 @@ TEST_F(VectorFiles, CsvComesBackExactly) {
 }
 
 TEST_F(VectorFiles, Hdf5ComesBackExactly) {
-  write_vectors(path("v.h5"), small_grid(), origin());
-  VectorFile const back = read_vectors(path("v.h5"));
+  write_vectors(in_folder("v.h5"), small_grid(), origin());
+  VectorFile const back = read_vectors(in_folder("v.h5"));
   EXPECT_EQ(back.field.failed, small_grid().failed);
   EXPECT_FALSE(back.foreign);
   expect_equal(small_grid(), back.field);
@@ -129,8 +112,8 @@ TEST_F(VectorFiles, VectorsWithoutAnOriginAreTheirOwnRawOnes) {
   field.reason.clear();
   field.ambiguous.clear();
   for (std::string const name : {"v.csv", "v.h5"}) {
-    write_vectors(path(name), field, origin());
-    DisplacementField const back = read_vectors(path(name)).field;
+    write_vectors(in_folder(name), field, origin());
+    DisplacementField const back = read_vectors(in_folder(name)).field;
     for (std::size_t i = 0; i < field.size(); ++i) {
       EXPECT_EQ(back.raw_px[i], field.displacement_px[i]);
       EXPECT_TRUE(std::isnan(back.correlation[i]));
@@ -144,8 +127,8 @@ TEST_F(VectorFiles, VectorsWithoutAnOriginAreTheirOwnRawOnes) {
 TEST_F(VectorFiles, EveryAmbiguityIsWrittenAsOne) {
   DisplacementField field = small_grid();
   field.ambiguous[0] = Ambiguity::earlier;
-  write_vectors(path("v.h5"), field, origin());
-  EXPECT_EQ(Hdf5Reader(path("v.h5")).read_integers("/ambiguous"), (std::vector<std::int64_t>{1, 1, 0, 0, 1, 0}));
+  write_vectors(in_folder("v.h5"), field, origin());
+  EXPECT_EQ(Hdf5Reader(in_folder("v.h5")).read_integers("/ambiguous"), (std::vector<std::int64_t>{1, 1, 0, 0, 1, 0}));
 }
 
 TEST_F(VectorFiles, WarningsAreKeptInHdf5) {
@@ -153,28 +136,28 @@ TEST_F(VectorFiles, WarningsAreKeptInHdf5) {
   field.warnings = {{WarningCode::unreliable, "", "one"},
                     {WarningCode::excluded, "a b.tif", "two: three"},
                     {WarningCode::assumed, "", "four"}};
-  write_vectors(path("v.h5"), field, origin());
-  EXPECT_EQ(Hdf5Reader(path("v.h5")).attribute("warnings"), "one\na b.tif: two: three\nfour");
-  EXPECT_EQ(read_warnings(Hdf5Reader(path("v.h5"))), field.warnings);
+  write_vectors(in_folder("v.h5"), field, origin());
+  EXPECT_EQ(Hdf5Reader(in_folder("v.h5")).attribute("warnings"), "one\na b.tif: two: three\nfour");
+  EXPECT_EQ(read_warnings(Hdf5Reader(in_folder("v.h5"))), field.warnings);
   // files of earlier versions have texts only
-  Hdf5Writer old(path("old.h5"), origin());
+  Hdf5Writer old(in_folder("old.h5"), origin());
   old.attribute("/", "warnings", "one\na.tif: two");
   old.close();
-  EXPECT_EQ(read_warnings(Hdf5Reader(path("old.h5"))),
+  EXPECT_EQ(read_warnings(Hdf5Reader(in_folder("old.h5"))),
             (Warnings{{WarningCode::other, "", "one"}, {WarningCode::other, "", "a.tif: two"}}));
 }
 
 TEST_F(VectorFiles, OtherEndingsAreNotWritten) {
-  EXPECT_THAT([&] { write_vectors(path("v.txt"), small_grid(), origin()); }, ThrowsOutputError("v.txt"));
+  EXPECT_THAT([&] { write_vectors(in_folder("v.txt"), small_grid(), origin()); }, ThrowsOutputError("v.txt"));
 }
 
 TEST_F(VectorFiles, OpenPivTextIsRead) {
-  VectorFile const back = read_vectors(file("o.txt",
-                                            "# x\ty\tu\tv\tflags\tmask\n"
-                                            "1.6000e+01\t1.6000e+01\t1.2500e+00\t-5.0000e-01\t0.0000e+00\t0.0000e+00\n"
-                                            "3.2000e+01\t1.6000e+01\t2.0000e+00\t0.0000e+00\t1.0000e+00\t0.0000e+00\n"
-                                            "1.6000e+01\t3.2000e+01\t3.0000e+00\t0.0000e+00\t2.0000e+00\t0.0000e+00\n"
-                                            "3.2000e+01\t3.2000e+01\tnan\tnan\t0.0000e+00\t1.0000e+00\n"));
+  VectorFile const back = read_vectors(write("o.txt",
+                                             "# x\ty\tu\tv\tflags\tmask\n"
+                                             "1.6000e+01\t1.6000e+01\t1.2500e+00\t-5.0000e-01\t0.0000e+00\t0.0000e+00\n"
+                                             "3.2000e+01\t1.6000e+01\t2.0000e+00\t0.0000e+00\t1.0000e+00\t0.0000e+00\n"
+                                             "1.6000e+01\t3.2000e+01\t3.0000e+00\t0.0000e+00\t2.0000e+00\t0.0000e+00\n"
+                                             "3.2000e+01\t3.2000e+01\tnan\tnan\t0.0000e+00\t1.0000e+00\n"));
   EXPECT_EQ(back.format, "OpenPIV");
   EXPECT_TRUE(back.foreign);
   EXPECT_EQ(back.conventions.offset_px, -0.5);
@@ -185,16 +168,16 @@ TEST_F(VectorFiles, OpenPivTextIsRead) {
 }
 
 TEST_F(VectorFiles, OpenPivCxxTextIsRead) {
-  VectorFile const back = read_vectors(file("c.txt",
-                                            "# x\ty\tu\tv\tflag\t\n"
-                                            " 16.0000\t 16.0000\t  1.2500\t -0.5000\t  0.0000\n"));
+  VectorFile const back = read_vectors(write("c.txt",
+                                             "# x\ty\tu\tv\tflag\t\n"
+                                             " 16.0000\t 16.0000\t  1.2500\t -0.5000\t  0.0000\n"));
   EXPECT_EQ(back.format, "OpenPIV");
   EXPECT_EQ(back.field.displacement_px[0], (Vec2d{1.25, -0.5}));
 }
 
 // Older versions write only a mask, which marks invalid vectors, too.
 TEST_F(VectorFiles, MaskOfOpenPivWithoutFlagsMarksInvalidVectors) {
-  VectorFile const back = read_vectors(file("o.txt", "# x\ty\tu\tv\tmask\n16\t16\t1\t2\t0\n32\t16\t1\t2\t1\n"));
+  VectorFile const back = read_vectors(write("o.txt", "# x\ty\tu\tv\tmask\n16\t16\t1\t2\t0\n32\t16\t1\t2\t1\n"));
   EXPECT_EQ(back.format, "OpenPIV");
   EXPECT_EQ(back.field.status, (std::vector{VectorStatus::valid, VectorStatus::invalid}));
 }
@@ -211,7 +194,7 @@ TEST_F(VectorFiles, PivlabExportIsReadAndPutInRows) {
     for (char& c : text) {
       if (c == ',') c = separator;
     }
-    VectorFile const back = read_vectors(file("p.txt", text));
+    VectorFile const back = read_vectors(write("p.txt", text));
     EXPECT_EQ(back.format, "PIVlab");
     EXPECT_EQ(back.conventions.offset_px, -1.5);
     ASSERT_EQ(back.field.columns, 2);
@@ -225,9 +208,9 @@ TEST_F(VectorFiles, PivlabExportIsReadAndPutInRows) {
 // 0.5 mm and 2 m/s per pixel. Without these factors the file cannot be compared, and the message states what to
 // specify.
 TEST_F(VectorFiles, CalibratedExportsTakeTheirFactors) {
-  VectorFile calibrated = read_vectors(file("p.txt",
-                                            "PIVlab, ASCII chart output - today\r\nFRAME: 1\r\n"
-                                            "x [mm],y [mm],u [m/s],v [m/s],Vector type [-]\r\n5,6,1,-3,1\r\n"));
+  VectorFile calibrated = read_vectors(write("p.txt",
+                                             "PIVlab, ASCII chart output - today\r\nFRAME: 1\r\n"
+                                             "x [mm],y [mm],u [m/s],v [m/s],Vector type [-]\r\n5,6,1,-3,1\r\n"));
   EXPECT_EQ(calibrated.place_unit, "mm");
   EXPECT_EQ(calibrated.displacement_unit, "m/s");
   EXPECT_EQ(error_of([&] { convert_to_pixels(calibrated, "p.txt"); }), "undetermined at p.txt");
@@ -287,7 +270,7 @@ TEST_F(VectorFiles, OtherProgramsFilesAreTheSameVectors) {
 TEST_F(VectorFiles, CodesOfOtherProgramsAreTheirs) {
   using enum VectorStatus;
   auto const status = [&](std::string const& name, std::string const& text) {
-    return read_vectors(file(name, text)).field.status;
+    return read_vectors(write(name, text)).field.status;
   };
   EXPECT_EQ(status("a.vec",
                    "TITLE=\"a\" VARIABLES=\"X mm\", \"Y mm\", \"U m/s\", \"V m/s\", \"CHC\", ZONE I=4, J=1\n"
@@ -303,7 +286,7 @@ TEST_F(VectorFiles, CodesOfOtherProgramsAreTheirs) {
             (std::vector{valid, replaced, invalid}));
   EXPECT_EQ(status("d.jvc", "1 1 2 2 1.0\n2 1 2 2 -1.0\n"), (std::vector{valid, invalid}));
   VectorFile const zeros = read_vectors(
-      file("e.dat", "VARIABLES = \"x\", \"y\", \"Vx\", \"Vy\"\nZONE I=2\n1 1 2 2\n2 1 0 0\nZONE I=1\n9 9 9 9\n"));
+      write("e.dat", "VARIABLES = \"x\", \"y\", \"Vx\", \"Vy\"\nZONE I=2\n1 1 2 2\n2 1 0 0\nZONE I=1\n9 9 9 9\n"));
   EXPECT_EQ(zeros.field.status, (std::vector{valid, masked}));
   ASSERT_EQ(zeros.warnings.size(), 2u);
   EXPECT_THAT(zeros.warnings[0], Warns("ignored at e.dat:5"));
@@ -333,7 +316,7 @@ TEST_F(VectorFiles, RowsAreCountedAgainstTheHeader) {
     std::string text = one.header;
     for (int row = 1; row <= 7; ++row) {
       text += one.row;
-      VectorFile const back = read_vectors(file(one.name, text));
+      VectorFile const back = read_vectors(write(one.name, text));
       EXPECT_EQ(back.field.size(), static_cast<std::size_t>(row)) << one.name;
       EXPECT_EQ(back.complete, row == 6) << one.name << ' ' << row;
       ASSERT_EQ(back.warnings.size(), row == 6 ? 0u : 1u) << one.name << ' ' << row;
@@ -342,15 +325,15 @@ TEST_F(VectorFiles, RowsAreCountedAgainstTheHeader) {
                                           AllOf(HasSubstr(" 6 "), HasSubstr(std::to_string(row)))));
     }
   }
-  EXPECT_TRUE(read_vectors(file("e.csv", "# i = 3\nx,y,u,v\n1,1,2,2\n")).complete) << "no zone";
+  EXPECT_TRUE(read_vectors(write("e.csv", "# i = 3\nx,y,u,v\n1,1,2,2\n")).complete) << "no zone";
 }
 
 // Text export of DaVis: the units are in its header, and y points upwards as in its .dat files.
 TEST_F(VectorFiles, TextExportOfDavisIsRead) {
   VectorFile const back =
-      read_vectors(file("d.txt",
-                        "#DaVis 8.0.6 2D-vector 16 2 1 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n"
-                        "11,5000\t499,5000\t-0,9006\t-0,8446\n21,5\t499,5\t0\t0\n"));
+      read_vectors(write("d.txt",
+                         "#DaVis 8.0.6 2D-vector 16 2 1 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n"
+                         "11,5000\t499,5000\t-0,9006\t-0,8446\n21,5\t499,5\t0\t0\n"));
   EXPECT_EQ(back.format, "DaVis");
   EXPECT_EQ(back.place_unit, "mm");
   EXPECT_EQ(back.displacement_unit, "m/s");
@@ -359,14 +342,14 @@ TEST_F(VectorFiles, TextExportOfDavisIsRead) {
   EXPECT_EQ(back.field.displacement_px[0], (Vec2d{-0.9006, -0.8446}));
   EXPECT_EQ(back.field.status, (std::vector{VectorStatus::valid, VectorStatus::masked}));
   VectorFile const downwards =
-      read_vectors(file("m.txt",
-                        "#DaVis 8.0.6 2D-vector 16 1 2 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n"
-                        "11,5\t11,5\t-0,9\t0,8\n11,5\t21,5\t-0,9\t0,8\n"));
+      read_vectors(write("m.txt",
+                         "#DaVis 8.0.6 2D-vector 16 1 2 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n"
+                         "11,5\t11,5\t-0,9\t0,8\n11,5\t21,5\t-0,9\t0,8\n"));
   EXPECT_FALSE(downwards.conventions.y_up || downwards.conventions.v_up) << "the first row is the top one";
   VectorFile const pixels = read_vectors(
-      file("p.txt",
-           "#DaVis 8.4.0 2D-vector 10 1 1 \"position\" \"pixel\" \"position\" \"pixel\" \"displacement\" \"pixel\"\n"
-           "1.5\t2.5\t-0.5\t0.25\n"));
+      write("p.txt",
+            "#DaVis 8.4.0 2D-vector 10 1 1 \"position\" \"pixel\" \"position\" \"pixel\" \"displacement\" \"pixel\"\n"
+            "1.5\t2.5\t-0.5\t0.25\n"));
   EXPECT_EQ(pixels.place_unit + pixels.displacement_unit, "");
   EXPECT_EQ(problem("#DaVis 8.4.0 3D-vector 10 1 1 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n"
                     "1\t2\t3\t4\t5\n"),
@@ -376,10 +359,10 @@ TEST_F(VectorFiles, TextExportOfDavisIsRead) {
 // Validity is read by the column names of other programs, in a table of any program.
 TEST_F(VectorFiles, ValidityIsReadByItsName) {
   using enum VectorStatus;
-  VectorFile const chc = read_vectors(file("c.csv", "x,y,u,v,chc\n1,1,99,2,-1\n2,1,2,2,1\n3,1,2,2,2\n4,1,2,2,0\n"));
+  VectorFile const chc = read_vectors(write("c.csv", "x,y,u,v,chc\n1,1,99,2,-1\n2,1,2,2,1\n3,1,2,2,2\n4,1,2,2,0\n"));
   EXPECT_EQ(chc.field.status, (std::vector{invalid, valid, replaced, invalid}));
   EXPECT_TRUE(chc.notes.empty());
-  EXPECT_EQ(read_vectors(file("v.csv", "x,y,u,v,isValid\n1,1,9,2,0\n2,1,2,2,1\n")).field.status,
+  EXPECT_EQ(read_vectors(write("v.csv", "x,y,u,v,isValid\n1,1,9,2,0\n2,1,2,2,1\n")).field.status,
             (std::vector{masked, valid}));
 }
 
@@ -388,19 +371,19 @@ TEST_F(VectorFiles, TablesOfAnyProgramMayHaveOurStatus) {
   using enum VectorStatus;
   for (auto const& [u, v] : {std::pair{"u", "v"}, std::pair{"vx", "vy"}, std::pair{"dx", "dy"}}) {
     std::string const names = std::string("x,y,") + u + ',' + v;
-    VectorFile const plain = read_vectors(file("p.csv", names + "\n1,2,0,0\n2,2,3,4\n"));
+    VectorFile const plain = read_vectors(write("p.csv", names + "\n1,2,0,0\n2,2,3,4\n"));
     EXPECT_EQ(plain.format, "named columns");
     EXPECT_EQ(plain.conventions, VectorConventions{});
     EXPECT_EQ(plain.field.displacement_px[1], (Vec2d{3, 4})) << names;
     EXPECT_EQ(plain.field.status, (std::vector{valid, valid})) << names;
   }
-  EXPECT_EQ(read_vectors(file("s.csv", "x,y,u,v,status\n1,1,1,1,0\n2,1,1,1,1\n3,1,1,1,2\n4,1,1,1,3\n")).field.status,
+  EXPECT_EQ(read_vectors(write("s.csv", "x,y,u,v,status\n1,1,1,1,0\n2,1,1,1,1\n3,1,1,1,2\n4,1,1,1,3\n")).field.status,
             (std::vector{valid, replaced, masked, invalid}));
 }
 
 // A Tecplot file of an unknown program is read as one of DaVis: zeros are masked, with a warning.
 TEST_F(VectorFiles, OtherTecplotFilesAreReadAsThoseOfDavis) {
-  VectorFile const back = read_vectors(file(
+  VectorFile const back = read_vectors(write(
       "t.dat",
       "TITLE = \"any\"\nVARIABLES = \"x\" \"y\" \"u\" \"v\"\nZONE I=2, J=1, DATAPACKING=POINT\n1 9 2 3\n2 9 0 0\n"));
   EXPECT_EQ(back.format, "Tecplot");
@@ -414,7 +397,7 @@ TEST_F(VectorFiles, OtherTecplotFilesAreReadAsThoseOfDavis) {
 TEST_F(VectorFiles, TecplotBlocksAreReadVariableByVariable) {
   std::string const header = "VARIABLES = \"x\" \"y\" \"u\" \"v\" \"isValid\"\nZONE I=3, J=1, DATAPACKING=BLOCK\n";
   DisplacementField const field =
-      read_vectors(file("b.dat", header + "1 2 3 10 10\n10 0.5\n0.25 0.125 4 5 6\n1 1 0\n")).field;
+      read_vectors(write("b.dat", header + "1 2 3 10 10\n10 0.5\n0.25 0.125 4 5 6\n1 1 0\n")).field;
   EXPECT_EQ(field.position_px, (std::vector<Vec2d>{{1, 10}, {2, 10}, {3, 10}}));
   EXPECT_EQ(field.displacement_px, (std::vector<Vec2d>{{0.5, 4}, {0.25, 5}, {0.125, 6}}));
   EXPECT_EQ(field.status, (std::vector{VectorStatus::valid, VectorStatus::valid, VectorStatus::masked}));
@@ -425,7 +408,7 @@ TEST_F(VectorFiles, TecplotBlocksAreReadVariableByVariable) {
 }
 
 TEST_F(VectorFiles, UnusedColumnsAreNamed) {
-  VectorFile const back = read_vectors(file("n.csv", "x [px],y [px],u,v,snr,x [mm],good\n1,1,2,2,5,3,1\n"));
+  VectorFile const back = read_vectors(write("n.csv", "x [px],y [px],u,v,snr,x [mm],good\n1,1,2,2,5,3,1\n"));
   ASSERT_EQ(back.notes.size(), 1u);
   EXPECT_THAT(back.notes[0], AllOf(HasSubstr("n.csv:1: "), HasSubstr("snr, good")));
   EXPECT_TRUE(back.warnings.empty());
@@ -437,14 +420,14 @@ TEST_F(VectorFiles, DecimalsMayHaveCommas) {
        {"x;y;u;v\n1,5;2;3,25;-4,5\n", "x\ty\tu\tv\n1,5\t2\t3,25\t-4,5\n", "x y u v\n1,5 2 3,25 -4,5\n",
         "x,y,u,v\n1.5, 2, 3.25, -4.5\n", "x,y,u,v\n\"1,5\",\"2\",\"3,25\",\"-4,5\"\n",
         "\"x\";\"y\";\"u\";\"v\"\n\"1,5\";\"2\";3,25;\"-4,5\"\n", "x;y;u;v\n1.5;2;3.25;-4.5\n"}) {
-    VectorFile const back = read_vectors(file("n.csv", text));
+    VectorFile const back = read_vectors(write("n.csv", text));
     EXPECT_EQ(back.field.position_px[0], (Vec2d{1.5, 2.0})) << text;
     EXPECT_EQ(back.field.displacement_px[0], (Vec2d{3.25, -4.5})) << text;
   }
 }
 
 TEST_F(VectorFiles, CommasThatSeparateAndMarkDecimalsAreRefusedWithTheirLine) {
-  auto const reading = [&](std::string const& text) { return [this, text] { read_vectors(file("bad.csv", text)); }; };
+  auto const reading = [&](std::string const& text) { return [this, text] { read_vectors(write("bad.csv", text)); }; };
   EXPECT_THAT(reading("x,y,u,v\n11,500,11,500,-0,901,0,845\n"), ThrowsDataError(ErrorCode::syntax, "bad.csv:2"));
   EXPECT_THAT(reading("x,y,u,v\n11.5,11,-0.9,0.8,7\n"), ThrowsDataError(ErrorCode::syntax, "bad.csv:2"));
   EXPECT_TRUE(has_ambiguous_commas("11,500,11,500,-0,901,0,845", 4));
@@ -460,7 +443,7 @@ TEST_F(VectorFiles, Utf16IsRead) {
     big += {'\0', c};
   }
   for (std::string const& bytes : {"\xff\xfe" + little, "\xfe\xff" + big}) {
-    VectorFile const back = read_vectors(file("u.csv", bytes));
+    VectorFile const back = read_vectors(write("u.csv", bytes));
     ASSERT_EQ(back.field.size(), 1u);
     EXPECT_EQ(back.field.position_px[0], (Vec2d{1.5, 2.0}));
     EXPECT_EQ(back.field.displacement_px[0], (Vec2d{3.25, -4.5}));
@@ -470,7 +453,7 @@ TEST_F(VectorFiles, Utf16IsRead) {
 }
 
 TEST_F(VectorFiles, NamedColumnsAreReadInAnyOrder) {
-  VectorFile const back = read_vectors(file("n.csv", "v;su;u;y;x;sv\n4;0.1;3;2;1;0.2\n"));
+  VectorFile const back = read_vectors(write("n.csv", "v;su;u;y;x;sv\n4;0.1;3;2;1;0.2\n"));
   EXPECT_EQ(back.format, "named columns");
   EXPECT_EQ(back.field.position_px[0], (Vec2d{1.0, 2.0}));
   EXPECT_EQ(back.field.displacement_px[0], (Vec2d{3.0, 4.0}));
@@ -479,7 +462,7 @@ TEST_F(VectorFiles, NamedColumnsAreReadInAnyOrder) {
 
 // A number beyond the range of double is still a number: its vector is excluded, and the file is not rejected.
 TEST_F(VectorFiles, NumbersBeyondDoublesAreInfinite) {
-  VectorFile const back = read_vectors(file("n.csv", "x,y,u,v\n1e400,-1e400,1e-400,inf\n"));
+  VectorFile const back = read_vectors(write("n.csv", "x,y,u,v\n1e400,-1e400,1e-400,inf\n"));
   double const infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(back.field.position_px[0], (Vec2d{infinity, -infinity}));
   EXPECT_EQ(back.field.displacement_px[0], (Vec2d{0.0, infinity}));
@@ -497,8 +480,8 @@ TEST_F(VectorFiles, BrokenTextIsRefusedAtItsLine) {
   EXPECT_EQ(problem("x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status,u_raw_px,v_raw_px,correlation,reason,"
                     "ambiguous\n1,2,3,4,nan,nan,nan,0,3,4,0.5,9,0\n"),
             "out_of_range at bad.csv:2");
-  EXPECT_THAT([&] { read_vectors(path("absent.csv")); }, ThrowsDataError(ErrorCode::missing_file, "absent.csv"));
-  EXPECT_THAT([&] { read_vectors(path("absent.h5")); }, ThrowsDataError(ErrorCode::missing_file, "absent.h5"));
+  EXPECT_THAT([&] { read_vectors(in_folder("absent.csv")); }, ThrowsDataError(ErrorCode::missing_file, "absent.csv"));
+  EXPECT_THAT([&] { read_vectors(in_folder("absent.h5")); }, ThrowsDataError(ErrorCode::missing_file, "absent.h5"));
 }
 
 TEST(VectorConventions, AreSaidAsTheyAreTold) {

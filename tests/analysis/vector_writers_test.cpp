@@ -41,11 +41,6 @@ class VectorWriters : public FolderFixture {
     write_vectors(path, field, origin);
     return path;
   }
-  std::string place(std::string const& name) const { return in_folder(name); }
-  static std::string content(std::string const& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
 };
 
 /// A grid of 2 rows and 3 columns whose numbers name their place: u = 10 row + column, v = -u.
@@ -102,7 +97,7 @@ TEST_F(VectorWriters, TecplotHasOneRowPerVectorAndZerosForUnknownValues) {
 
 // Files of older versions do not mark unknown values: a 0 is then unknown wherever a measurement cannot be exactly 0.
 TEST_F(VectorWriters, TecplotOfOlderVersionsIsRead) {
-  std::string const path = place("old.dat");
+  std::string const path = in_folder("old.dat");
   std::ofstream(path) << "TITLE = \"gladstone vectors, px, y and v downwards; unknown values are 0\"\n"
                          "VARIABLES = \"x_px\" \"y_px\" \"u_px\" \"v_px\" \"sigma_u_px\" \"sigma_v_px\" \"status\"\n"
                          "ZONE T=\"vectors\", I=2, J=1, DATAPACKING=POINT\n"
@@ -115,7 +110,7 @@ TEST_F(VectorWriters, TecplotOfOlderVersionsIsRead) {
 
 TEST_F(VectorWriters, TecplotMarksAreSumsOfPowersOfTwo) {
   for (std::string const mark : {"64", "0.5", "-1", "1e300"}) {
-    std::string const path = place("bad.dat");
+    std::string const path = in_folder("bad.dat");
     std::ofstream(path) << "VARIABLES = x_px y_px u_px v_px status unknown\nZONE I=1\n1 2 3 4 0 " << mark << '\n';
     EXPECT_THAT([&] { read_vectors(path); }, ThrowsDataError(ErrorCode::out_of_range, "bad.dat:3")) << mark;
   }
@@ -219,7 +214,7 @@ std::string write_schema(std::string const& path, std::vector<std::string> const
 TEST_F(VectorWriters, DataSetsOfPivpyAreReadInAnyOrderOfAxes) {
   for (std::vector<std::string> const& axes :
        {std::vector<std::string>{"y", "x", "t"}, {"t", "y", "x"}, {"x", "y", "t"}, {"x", "y"}}) {
-    VectorFile const file = read_vectors(write_schema(place("pivpy.nc"), axes, 1));
+    VectorFile const file = read_vectors(write_schema(in_folder("pivpy.nc"), axes, 1));
     EXPECT_EQ(file.format, "PIVPy");
     EXPECT_TRUE(file.foreign);
     ASSERT_EQ(file.field.size(), 6u);
@@ -230,16 +225,16 @@ TEST_F(VectorWriters, DataSetsOfPivpyAreReadInAnyOrderOfAxes) {
     EXPECT_THAT(file.warnings, testing::IsEmpty());
   }
   // PIVPy copies the flags of OpenPIV to chc, whose 0 means valid
-  VectorFile const flags = read_vectors(write_schema(place("flags.nc"), {"y", "x", "t"}, 1, 0));
+  VectorFile const flags = read_vectors(write_schema(in_folder("flags.nc"), {"y", "x", "t"}, 1, 0));
   EXPECT_THAT(flags.warnings, ElementsAre(Warns("implausible at flags.nc")));
   EXPECT_EQ(flags.field.status[5], VectorStatus::invalid);
   EXPECT_THAT(
       [&] {
-        read_vectors(write_schema(place("two.nc"), {"y", "x", "t"}, 2));
+        read_vectors(write_schema(in_folder("two.nc"), {"y", "x", "t"}, 2));
       },
       ThrowsDataError(ErrorCode::wrong_shape, "two.nc"));
-  std::ofstream(place("classic.nc"), std::ios::binary) << std::string("CDF\x01\0\0\0\0", 8);
-  EXPECT_THAT([&] { read_vectors(place("classic.nc")); }, ThrowsDataError(ErrorCode::unsupported, "classic.nc"));
+  std::ofstream(in_folder("classic.nc"), std::ios::binary) << std::string("CDF\x01\0\0\0\0", 8);
+  EXPECT_THAT([&] { read_vectors(in_folder("classic.nc")); }, ThrowsDataError(ErrorCode::unsupported, "classic.nc"));
 }
 
 TEST_F(VectorWriters, TecplotComesBack) {
@@ -354,17 +349,18 @@ TEST_F(VectorWriters, ImagesOfEqualSpacingStoreNoPositions) {
   DisplacementField moved = numbered_grid();
   moved.position_px[1].x += 1e-3;
   EXPECT_THAT(content(write("w.vti", moved)), HasSubstr("position_px"));
-  EXPECT_EQ(read_vectors(place("w.vti")).field.position_px, moved.position_px);
+  EXPECT_EQ(read_vectors(in_folder("w.vti")).field.position_px, moved.position_px);
 }
 
 TEST_F(VectorWriters, FilesOfOtherContentAreRefused) {
-  auto const vti = [&](std::string const& arrays) {
-    std::ofstream(place("v.vti"))
-        << "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 0 0 0\"><Piece Extent=\"0 1 0 0 0 "
-           "0\"><PointData>" +
-               arrays + "</PointData></Piece></ImageData></VTKFile>";
-    return place("v.vti");
-  };
+  auto const vti =
+      [&](std::string const& arrays) {
+        std::ofstream(in_folder("v.vti"))
+            << "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 0 0 0\"><Piece Extent=\"0 1 0 0 0 "
+               "0\"><PointData>" +
+                   arrays + "</PointData></Piece></ImageData></VTKFile>";
+        return in_folder("v.vti");
+      };
   std::string const two =
       "<DataArray type=\"Float64\" Name=\"displacement_px\" NumberOfComponents=\"2\">1 2 3 4</DataArray>";
   EXPECT_EQ(read_vectors(vti(two)).field.displacement_px, (std::vector<Vec2d>{{1, 2}, {3, 4}}));

@@ -43,7 +43,8 @@ TEST_P(Adding, TouchesWhatTheTableNames) {
       permitted.insert(needed->second.begin(), needed->second.end());
     }
     for (auto const& [path, text] : sources()) {
-      if (fs::path(path).replace_extension().string() == own || permitted.count(path) > 0) continue;
+      bool const is_oracle = path.rfind("studies/oracles/", 0) == 0;  // compares entries with formulas
+      if (fs::path(path).replace_extension().string() == own || permitted.count(path) > 0 || is_oracle) continue;
       EXPECT_FALSE(names_entry(text, name, row)) << path << " names the " << row.thing << " " << name << " of " << own;
     }
   }

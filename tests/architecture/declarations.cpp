@@ -1,40 +1,30 @@
 #include "tests/architecture/declarations.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <regex>
 #include <set>
 
+#include "tests/architecture/product_sources.h"
+
 namespace gladstone::architecture {
 namespace {
 
-bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-/// Returns a source without preprocessor lines and block comments, and with empty literals.
+/// Returns a source without comments and preprocessor lines, and with empty literals.
 std::string blank_literals(std::string const& source) {
+  std::string const code = without_comments(source);
   std::string text;
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    char const c = source[i];
-    bool const begins_line = text.empty() || text.back() == '\n', after_word = i > 0 && is_word(source[i - 1]);
-    if (source.compare(i, 2, "R\"") == 0 && !after_word) {
-      std::size_t const open = source.find('(', i);
-      std::string const end = ')' + source.substr(i + 2, open - i - 2) + '"';
-      i = source.find(end, open) + end.size() - 1;
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    std::size_t const end = end_of_literal(code, i);
+    if (end > i) {
+      i = end - 1;
       text += "\"\"";
-    } else if (c == '"' || (c == '\'' && !after_word)) {
-      std::size_t end = i + 1;
-      while (end < source.size() && source[end] != c && source[end] != '\n') end += source[end] == '\\' ? 2 : 1;
-      i = end;
-      text += "\"\"";
-    } else if (source.compare(i, 2, "/*") == 0) {
-      i = std::min(source.find("*/", i), source.size()) + 1;
-    } else if (c == '#' && begins_line) {
-      while (i < source.size() && (source[i] != '\n' || source[i - 1] == '\\')) ++i;
+    } else if (code[i] == '#' && (text.empty() || text.back() == '\n')) {
+      while (i < code.size() && (code[i] != '\n' || code[i - 1] == '\\')) ++i;
       text += '\n';
     } else {
-      text += c;
+      text += code[i];
     }
   }
   return text;
@@ -166,6 +156,7 @@ std::map<std::string, char const*> const& registry_headers() {
       {"render/optics/prescription_readers/readers.h", formats},
       {"studies/commands/command.h", "commands, one file each"},
       {"studies/figures/study_drawings.h", "figures of a study, one file each"},
+      {"studies/oracles/oracles.h", "oracles, one file for each kind"},
       {"studies/report/report.h", "reports of a study, a case and a measurement, one file each"},
       {"studies/report/report_page.h", formats},
   };

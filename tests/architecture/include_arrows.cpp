@@ -1,9 +1,10 @@
 #include "tests/architecture/include_arrows.h"
 
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <regex>
+
+#include "tests/architecture/product_sources.h"
 
 namespace gladstone::architecture {
 namespace {
@@ -181,40 +182,6 @@ bool contains(Names const& names, std::string const& name) {
 
 bool ends_with_one_of(std::string_view path, std::initializer_list<std::string_view> endings) {
   return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
-}
-
-/// Returns the source with its comments replaced by blanks; line numbers are unchanged.
-std::string without_comments(std::string_view source) {
-  enum class In { code, text, character, line_comment, block_comment } in = In::code;
-  std::string out(source);
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    char const c = source[i];
-    char const next = i + 1 < source.size() ? source[i + 1] : '\0';
-    if (in == In::code && c == '/' && (next == '/' || next == '*')) {
-      in = next == '/' ? In::line_comment : In::block_comment;
-      out[i] = out[i + 1] = ' ';
-      ++i;
-    } else if (in == In::block_comment && c == '*' && next == '/') {
-      in = In::code;
-      out[i] = out[i + 1] = ' ';
-      ++i;
-    } else if (in == In::line_comment || in == In::block_comment) {
-      if (c != '\n') out[i] = ' ';
-      if (c == '\n' && in == In::line_comment) in = In::code;
-    } else if ((in == In::text || in == In::character) && c == '\\') {
-      ++i;
-    } else if (c == '\n') {
-      in = In::code;
-    } else if (in == In::code && c == '"') {
-      in = In::text;
-    } else if (in == In::code && c == '\'' &&
-               (i == 0 || std::isalnum(static_cast<unsigned char>(source[i - 1])) == 0)) {
-      in = In::character;  // but not the separator of 1'000
-    } else if ((in == In::text && c == '"') || (in == In::character && c == '\'')) {
-      in = In::code;
-    }
-  }
-  return out;
 }
 
 /// Returns the problem of this include in this room; empty if it is permitted.

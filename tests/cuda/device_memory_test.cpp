@@ -131,7 +131,7 @@ TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   PlannedScene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
   few.dots.centre.resize(4);
   FocusedDots const dots = build_focused_dots(scene, scene.plan).value();
-  double const default_aim_distance = DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2;
+  double const default_aim_distance = DeflectionTableLayout::default_aim_distance(scene.imaging);
   DeflectionTableLayout const plan(dots, scene.dots, default_aim_distance);
   DeflectionTableLayout const of_few(build_focused_dots(few, few.plan).value(), few.dots, default_aim_distance);
   ASSERT_TRUE(plan.wanted() && of_few.wanted());

@@ -103,7 +103,7 @@ TEST_F(Calibrations, ReportPositionErrorDueToRays) {
 }
 
 // With "auto", each dot takes the rays that its image requires for half a grey level. They suffice for positions to
-// 1e-3 px, and the written setup renders the same images.
+// the goal of every truth, 1e-3 px, and the written setup renders the same images.
 TEST_F(Calibrations, AutoTakesTheRaysThatImagesRequire) {
   std::string const given = wide;
   write("setup.toml", given.substr(0, given.find("[render]")));

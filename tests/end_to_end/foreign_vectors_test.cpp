@@ -230,7 +230,7 @@ TEST_F(ForeignVectors, ThatFitNoConventionAreRefusedUnlessTold) {
   auto const errors = nlohmann::json::parse(shifted.out);
   expect_warning_in(errors, "implausible at shifted.csv");
   double const shift = numbers_in(errors["vectors"]["fit"]["likely_mistake"]["text"].get<std::string>()).at(0);
-  EXPECT_NEAR(shift, 21, 2) << "windows of 32 px overlap by half, so that the shift is known to some pixels";
+  EXPECT_NEAR(shift, 21, 2) << "a component of the shift is described only if it is known to 2 px";
   auto const told = compare({"--vectors", "shifted.csv", "--conventions", "y-down,v-down"});
   EXPECT_GT(told["ray_truth"]["rms_px"].get<double>(), 10 * ours_["ray_truth"]["rms_px"].get<double>());
 }

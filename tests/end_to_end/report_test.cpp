@@ -75,8 +75,8 @@ TEST_F(Reports, OfAStudyHoldsItsNumbersAndPictures) {
     nlohmann::json const& columns = chart["figures"][0]["figure"]["panels"][0]["layers"][0]["columns"];
     ASSERT_EQ(columns[0].size(), 6u);
     for (std::size_t i = 0; i < 6; ++i) {  // figures have seven digits: rounding by at most 5e-7
-      EXPECT_NEAR(columns[0][i].get<double>(), signal[i], 5.1e-7 * std::abs(signal[i]));
-      EXPECT_NEAR(columns[1][i].get<double>(), error[i], 5.1e-7 * std::abs(error[i]));
+      EXPECT_NEAR(columns[0][i].get<double>(), signal[i], 5e-7 * std::abs(signal[i]));
+      EXPECT_NEAR(columns[1][i].get<double>(), error[i], 5e-7 * std::abs(error[i]));
     }
   }
   EXPECT_EQ(charts, 1u);

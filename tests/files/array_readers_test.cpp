@@ -5,11 +5,8 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "render/base/error.h"
@@ -19,6 +16,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
 #include "tests/support/folder_fixture.h"
+#include "tests/support/number_bytes.h"
 
 namespace gladstone::array_readers_test {
 namespace {
@@ -55,19 +53,6 @@ std::vector<double> numbered() {
     }
   }
   return values;
-}
-
-template <class Stored>
-std::string bytes(std::vector<double> const& values, bool big_endian = false) {
-  std::string text;
-  for (double const value : values) {
-    auto const stored = static_cast<Stored>(value);
-    char raw[sizeof(Stored)];
-    std::memcpy(raw, &stored, sizeof(Stored));
-    if (big_endian == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof(Stored));
-    text.append(raw, sizeof(Stored));
-  }
-  return text;
 }
 
 template <class Stored>

@@ -4,10 +4,8 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -21,6 +19,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
 #include "tests/support/folder_fixture.h"
+#include "tests/support/number_bytes.h"
 
 namespace gladstone {
 namespace {
@@ -46,20 +45,6 @@ std::vector<double> numbered(int nx, int ny, int nz) {
     }
   }
   return values;
-}
-
-/// Returns the bytes of numbers in a stored type and byte order.
-template <class Stored>
-std::string bytes(std::vector<double> const& values, bool big_endian = false) {
-  std::string text;
-  for (double const value : values) {
-    auto const stored = static_cast<Stored>(value);
-    char raw[sizeof(Stored)];
-    std::memcpy(raw, &stored, sizeof(Stored));
-    if (big_endian == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof(Stored));
-    text.append(raw, sizeof(Stored));
-  }
-  return text;
 }
 
 class JhtdbField : public FolderFixture {
@@ -569,18 +554,12 @@ class NrrdField : public FolderFixture {
  protected:
   static std::string header(std::string const& fields) { return "NRRD0005\n# a comment\nnote:=ignored\n" + fields; }
 
-  std::string write(std::string const& name, std::string const& content) const {
-    std::ofstream(in_folder(name), std::ios::binary) << content;
-    return in_folder(name);
-  }
-
   std::string gzipped(std::string const& content) const {
     std::string const path = in_folder("scratch.gz");
     gzFile const file = gzopen(path.c_str(), "wb");
     gzwrite(file, content.data(), static_cast<unsigned>(content.size()));
     gzclose(file);
-    std::ifstream stored(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stored), {}};
+    return gladstone::content(path);
   }
 
   void expect_numbered(std::string const& path) const {

@@ -106,8 +106,7 @@ TEST_F(Hdf5, EqualInputGivesEqualFilesButForTheDate) {
   write_ramp(in_folder("b.h5"), 10000);
   auto const bytes = [&](std::string const& name) {
     std::string const date = Hdf5Reader(in_folder(name)).attribute("date_and_time");
-    std::ifstream file(in_folder(name), std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::string text = content(in_folder(name));
     auto const at = text.find(date);
     EXPECT_NE(at, std::string::npos);
     return text.erase(at, date.size());
@@ -196,8 +195,7 @@ TEST_F(Hdf5, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   std::string const path = in_folder("promise.h5");
   for (std::string const& promised : {std::string("\0\0\0\0\0\0\0\x02", 8), std::string("\0\xe1\xf5\x05\0\0\0\0", 8)}) {
     write_ramp(path, 10007);
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    std::string bytes = content(path);
     std::string const rows("\x17\x27\0\0\0\0\0\0", 8);
     int replaced = 0;
     for (std::size_t at; (at = bytes.find(rows)) != std::string::npos; ++replaced) bytes.replace(at, 8, promised);

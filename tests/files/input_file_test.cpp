@@ -9,7 +9,6 @@
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "render/base/error.h"
 #include "render/files/text_file.h"
@@ -22,33 +21,33 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class InputFiles : public FolderFixture {
- protected:
-  std::string in(std::string const& name) const { return in_folder(name); }
-};
+using InputFiles = FolderFixture;
 
 // Opening a pipe without a writer blocks for ever, and a device has no end.
 TEST_F(InputFiles, WhatIsNoRegularFileIsRefusedByNameBeforeItIsOpened) {
-  ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);
-  EXPECT_THAT([&] { InputFile file(in("pipe"), "a setup file"); },
-              ThrowsDataError(ErrorCode::unreadable_file, in("pipe")));
-  fs::create_symlink("pipe", in("link"));
-  EXPECT_THAT([&] { InputFile file(in("link")); }, ThrowsDataError(ErrorCode::unreadable_file, "link"));
+  ASSERT_EQ(::mkfifo(in_folder("pipe").c_str(), 0600), 0);
+  EXPECT_THAT([&] { InputFile file(in_folder("pipe"), "a setup file"); },
+              ThrowsDataError(ErrorCode::unreadable_file, in_folder("pipe")));
+  fs::create_symlink("pipe", in_folder("link"));
+  EXPECT_THAT([&] { InputFile file(in_folder("link")); }, ThrowsDataError(ErrorCode::unreadable_file, "link"));
   EXPECT_THAT([&] { InputFile file(folder_.string(), "a picture"); },
               ThrowsDataError(ErrorCode::unreadable_file, folder_.string()));
   EXPECT_THAT([&] { InputFile file("/dev/zero"); }, ThrowsDataError(ErrorCode::unreadable_file, "/dev/zero"));
-  EXPECT_THAT([&] { InputFile file(in("nothing")); }, ThrowsDataError(ErrorCode::missing_file, "nothing"));
-  EXPECT_THAT([&] { InputFile file(in(std::string(5000, 'a'))); }, ThrowsDataError(ErrorCode::unreadable_file, "aaa"));
+  EXPECT_THAT([&] { InputFile file(in_folder("nothing")); }, ThrowsDataError(ErrorCode::missing_file, "nothing"));
+  EXPECT_THAT([&] { InputFile file(in_folder(std::string(5000, 'a'))); },
+              ThrowsDataError(ErrorCode::unreadable_file, "aaa"));
 
   int const listener = ::socket(AF_UNIX, SOCK_STREAM, 0);
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
+  fs::path const before = fs::current_path();
   fs::current_path(folder_);  // the name of a socket has at most 107 characters
   std::string const place = "socket";
   std::memcpy(address.sun_path, place.c_str(), place.size() + 1);
   ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr const*>(&address), sizeof address), 0);
   EXPECT_THAT([&] { InputFile file(place); }, ThrowsDataError(ErrorCode::unreadable_file, "socket"));
   ::close(listener);
+  fs::current_path(before);
 }
 
 TEST_F(InputFiles, AreReadFromAnyPlaceUpToTheirEnd) {
@@ -81,7 +80,7 @@ TEST_F(InputFiles, LinesComeWithoutTheirEnds) {
   EXPECT_EQ(lines.offset(), 5u);
   EXPECT_EQ(lines.next(), "two");
   EXPECT_EQ(lines.next(), "");
-  EXPECT_EQ(lines.place(), in("lines") + ":3");
+  EXPECT_EQ(lines.place(), in_folder("lines") + ":3");
   EXPECT_EQ(lines.next(), "last");
   EXPECT_EQ(lines.number(), 4u);
   EXPECT_EQ(lines.next(), std::nullopt);

@@ -113,58 +113,55 @@ TEST_F(InputGuards, FilesOfOtherResultsAreNotWritten) {
 /// Fixture: kinds of the files of a case and of a study, determined from their content.
 class FileKinds : public Output {
  protected:
-  void put(std::string const& name, std::string const& text) const {
-    std::ofstream(in_folder(name), std::ios::binary) << text;
-  }
   std::string kind(std::string const& name) const { return file_kind(in_folder(name)); }
 };
 
 TEST_F(FileKinds, AreToldByContent) {
   Hdf5Writer(in_folder("a.h5"), {"gladstone truth", 2, "", 0, "cpu"}).close();
   EXPECT_EQ(kind("a.h5"), "gladstone truth");
-  put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
+  write("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
   EXPECT_EQ(kind("damaged.h5"), "damaged HDF5");
-  put("figure.svg", "<?xml version=\"1.0\"?>\n<!-- a figure -->\n<svg>");
+  write("figure.svg", "<?xml version=\"1.0\"?>\n<!-- a figure -->\n<svg>");
   EXPECT_EQ(kind("figure.svg"), "SVG");
-  put("field.vti", "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">");
+  write("field.vti", "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">");
   EXPECT_EQ(kind("field.vti"), "VTK");
-  put("field.vtk", "# vtk DataFile Version 3.0\n");
+  write("field.vtk", "# vtk DataFile Version 3.0\n");
   EXPECT_EQ(kind("field.vtk"), "VTK");
-  put("other.xml", "<?xml version=\"1.0\"?>\n<table>");
+  write("other.xml", "<?xml version=\"1.0\"?>\n<table>");
   EXPECT_EQ(kind("other.xml"), "XML");
-  put("field.nrrd", "NRRD0005\n");
+  write("field.nrrd", "NRRD0005\n");
   EXPECT_EQ(kind("field.nrrd"), "NRRD");
-  put("a.tif", std::string("II*\0....", 8));
+  write("a.tif", std::string("II*\0....", 8));
   EXPECT_EQ(kind("a.tif"), "TIFF");
-  put("manifest.jsonl", "{\"manifest\":3}\n{}\n");
+  write("manifest.jsonl", "{\"manifest\":3}\n{}\n");
   EXPECT_EQ(kind("manifest.jsonl"), "JSON");
-  put("vectors.csv", "x_px,y_px,u_px,v_px,sigma_u_px\n");
+  write("vectors.csv", "x_px,y_px,u_px,v_px,sigma_u_px\n");
   EXPECT_EQ(kind("vectors.csv"), "gladstone vectors");
-  put("setup.toml", "# of a case\n\nschema = 1\n");
+  write("setup.toml", "# of a case\n\nschema = 1\n");
   EXPECT_EQ(kind("setup.toml"), "TOML");
-  put("table.toml", "  [lens]\nf_number = 8\n");
+  write("table.toml", "  [lens]\nf_number = 8\n");
   EXPECT_EQ(kind("table.toml"), "TOML");
-  put("prose.toml", "# a heading\nWords, and no keys = values.\n");
+  write("prose.toml", "# a heading\nWords, and no keys = values.\n");
   EXPECT_EQ(kind("prose.toml"), "");
-  put("rays.csv", "status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px\nalive,0\n");
+  write("rays.csv", "status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px\nalive,0\n");
   EXPECT_EQ(kind("rays.csv"), "gladstone rays");
-  put("study.csv", "lens.f_number,case,seed,status,repeat,rms_px\n8,0,1,ok,0,0.1\n");
+  write("study.csv", "lens.f_number,case,seed,status,repeat,rms_px\n8,0,1,ok,0,0.1\n");
   EXPECT_EQ(kind("study.csv"), "gladstone study table");
-  put("study_points.csv", "lens.f_number,case,rms_px.mean,rms_px.std\n8,0,1,2\n");
+  write("study_points.csv", "lens.f_number,case,rms_px.mean,rms_px.std\n8,0,1,2\n");
   EXPECT_EQ(kind("study_points.csv"), "gladstone study points");
-  put("benchmark.csv", "estimator,case,rms_px,seconds\n");
+  write("benchmark.csv", "estimator,case,rms_px,seconds\n");
   EXPECT_EQ(kind("benchmark.csv"), "gladstone benchmark");
-  put("combination.csv", "term,coefficient\nconstant,0.1\n");
+  write("combination.csv", "term,coefficient\nconstant,0.1\n");
   EXPECT_EQ(kind("combination.csv"), "gladstone uncertainty combination");
-  put("mine.csv", "case,x,y,u,v\n1,2,3,4,5\n");
+  write("mine.csv", "case,x,y,u,v\n1,2,3,4,5\n");
   EXPECT_EQ(kind("mine.csv"), "") << "a table of the user";
-  put("report.md", "# What it shows\n\nText.\n");
+  write("report.md", "# What it shows\n\nText.\n");
   EXPECT_EQ(kind("report.md"), "Markdown");
-  put("openpiv.txt", "# x y u v flags mask\n");
+  write("openpiv.txt", "# x y u v flags mask\n");
   EXPECT_EQ(kind("openpiv.txt"), "");
-  put("report.html", "<!DOCTYPE html>\n<html>");
+  write("report.html", "<!DOCTYPE html>\n<html>");
   EXPECT_EQ(kind("report.html"), "HTML");
-  put("empty", "");
+  write("empty", "");
   EXPECT_EQ(kind("empty"), "");
   EXPECT_EQ(kind("absent"), "");
 }
@@ -180,14 +177,14 @@ TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
   EXPECT_THAT([&] { Hdf5Writer(in_folder("truth.h5"), {"gladstone vectors", 1, "", 0, "cpu"}); }, refused);
   EXPECT_EQ(content(in_folder("truth.h5")), before);
   Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "other", 0, "cpu"}).close();
-  put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
+  write("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("damaged.h5"), "<html>"); }, ThrowsOutputError("damaged.h5"));
-  put("study.csv", "case,seed,status,repeat\n");
+  write("study.csv", "case,seed,status,repeat\n");
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "x_px,y_px,u_px,v_px\n"); },
               ThrowsOutputError("study.csv"));
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "plain text"); }, ThrowsOutputError("study.csv"));
   OutputFile::write_text(in_folder("study.csv"), "case,seed,status,repeat\n0,1,ok,0\n");
-  put("notes.txt", "mine");
+  write("notes.txt", "mine");
   OutputFile::write_text(in_folder("notes.txt"), "<html>");  // named by the user, and of an unknown kind
 }
 

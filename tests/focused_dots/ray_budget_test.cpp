@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "render/focused_dots/table_error.h"
@@ -104,16 +103,28 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
 TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
-  PlannedScene scene = scene_with_dots(setup, lattice(64, 4, 14), 512);
+  PlannedScene scene = scene_with_dots(setup, lattice(64, 4, 14), refined_table_rays);
   TableError const usual = measure_table_error(build_focused_dots(scene, scene.plan).value());
   EXPECT_EQ(usual.fineness, 1);
   RenderPlan const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.fineness, 2);
-  EXPECT_EQ(plan.rays, 512u);  // as in the scene above, whose table is not finer
+  EXPECT_EQ(plan.rays, refined_table_rays);  // as in the scene above, whose table is not finer
   TableError const error = plan.table_error.value();
   EXPECT_LT(error.image_levels, usual.image_levels / 2) << "of " << usual.image_levels;
   EXPECT_GT(error.image_levels, 0.5);  // half a level is the goal
   EXPECT_GT(error.excess(), 1);
+}
+
+// With a light cone of 105 cells, at f/4, the plan reports that the required accuracy, half a level, is not reached.
+TEST(PlanRays, ReportsUnreachableTolerance) {
+  auto setup = table1_setup(64);
+  setup.medium.field = dns_plane("kepeak");
+  setup.lens.f_number = 4;
+  PlannedScene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
+  RenderPlan const plan = plan_rays_anew(scene);
+  EXPECT_EQ(plan.fineness, 2);
+  EXPECT_GT(plan.table_error.value().image_levels, 0.5);
+  EXPECT_GT(plan.table_error->excess(), 1);
 }
 
 // The plan of the table depends on the view and the field, not on the dots of the scene: the truth of a dot is

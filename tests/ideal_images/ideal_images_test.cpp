@@ -143,7 +143,7 @@ TEST(IdealImages, SayWhatBlurTheyLeaveOut) {
   scene.particles.place[0][0].z = 0.5 * mm;
   scene.particles.photons[0][0] = 1;
   EXPECT_NEAR(build_ideal_images(scene)->largest_blur_px(scene.particles), 105.0 / 645 * 6.5625 * 0.5 / 749.5 / 5e-3,
-              1e-9);
+              1e-12);
 }
 
 /// Light of one particle on the axis, in the position z, by the formula and by 4096 rays, in multiples of all its

@@ -7,32 +7,12 @@
 #include <fstream>
 
 #include "render/base/parallel.h"
+#include "tests/light/particle_cube.h"
 
 namespace gladstone {
 namespace {
 
 constexpr double one_mm = 1e-3;
-
-FlowSetup uniform_flow_of(Vec3d velocity) {
-  FlowSetup flow;
-  flow.flow.uniform = velocity;
-  flow.dt = 1e-5;
-  return flow;
-}
-
-ParticleSetup particles_in_cube(double side) {
-  ParticleSetup setup;
-  setup.volume = Vec3d{side, side, side};
-  return setup;
-}
-
-/// A sheet that illuminates the whole volume.
-LaserSheet<double> sheet_over_all() {
-  LaserSetup laser;
-  laser.profile = SheetProfile::top_hat;
-  laser.thickness = laser.height = 1;
-  return laser_sheet(laser);
-}
 
 /// Particles listed in a file, without a volume.
 ParticleSetup listed_particles(std::vector<Vec3d> const& places) {
@@ -61,7 +41,7 @@ std::vector<Vec3d> const three_places{
 // In a uniform flow, particles are at p + k u dt in frame k.
 TEST(ParticleSequence, ShiftsParticlesByTheUniformFlow) {
   Vec3d const step{0.141 * one_mm, -0.03 * one_mm, 0.02 * one_mm};
-  ParticleSequence sequence(listed_particles(three_places), 0, uniform_flow_of(step / 1e-5), sheet_over_all(), 1e-12);
+  ParticleSequence sequence(listed_particles(three_places), 0, uniform_flow(step / 1e-5), wide_sheet(), 1e-12);
   for (std::size_t k : {0u, 1u, 7u}) {
     Particles const pair = sequence.pair(k);
     ASSERT_EQ(pair.size(), three_places.size());
@@ -75,9 +55,9 @@ TEST(ParticleSequence, ShiftsParticlesByTheUniformFlow) {
 // In solid-body rotation, particles keep their radius and turn by k omega dt: 20 frames of 0.05 rad. The step is chosen
 // for an error of 1e-12 m per frame.
 TEST(ParticleSequence, TurnsParticlesByTheSolidRotation) {
-  FlowSetup flow = uniform_flow_of({});
+  FlowSetup flow = uniform_flow({});
   flow.flow.kind = RotationFlow{5000, {}};
-  ParticleSequence sequence(listed_particles(three_places), 0, flow, sheet_over_all(), 1e-12);
+  ParticleSequence sequence(listed_particles(three_places), 0, flow, wide_sheet(), 1e-12);
   Particles const pair = sequence.pair(20);
   for (std::size_t i = 0; i < pair.size(); ++i) {
     for (int frame = 0; frame < 2; ++frame) {
@@ -92,10 +72,10 @@ TEST(ParticleSequence, TurnsParticlesByTheSolidRotation) {
 
 // The second frame of a pair is the first one of the next: the same particles at the same places, bit by bit.
 TEST(ParticleSequence, SharesFramesBetweenPairs) {
-  ParticleSetup setup = particles_in_cube(4 * one_mm);
+  ParticleSetup setup = cube_of_particles(4 * one_mm);
   setup.diameter.spread = DiameterSpread::lognormal;
   setup.diameter.width = 0.3;
-  ParticleSequence sequence(setup, 500, uniform_flow_of({60, 20, -30}), sheet_over_all(), 1e-12);
+  ParticleSequence sequence(setup, 500, uniform_flow({60, 20, -30}), wide_sheet(), 1e-12);
   Particles before = sequence.pair(0);
   for (std::size_t k = 1; k < 4; ++k) {
     Particles const next = sequence.pair(k);
@@ -114,8 +94,7 @@ TEST(ParticleSequence, SharesFramesBetweenPairs) {
 // particles, in each half and in total, to within five standard deviations of a Poisson distribution.
 TEST(ParticleSequence, KeepsTheNumberDensity) {
   constexpr double count = 10000;
-  ParticleSequence sequence(particles_in_cube(10 * one_mm), count, uniform_flow_of({200, 50, 0}), sheet_over_all(),
-                            1e-12);
+  ParticleSequence sequence(cube_of_particles(10 * one_mm), count, uniform_flow({200, 50, 0}), wide_sheet(), 1e-12);
   for (std::size_t k = 0; k < 12; ++k) {
     std::vector<Vec3d> const places = lit_places(sequence.pair(k), 0);
     EXPECT_NEAR(static_cast<double>(places.size()), count, 5 * std::sqrt(count)) << k;
@@ -129,18 +108,16 @@ TEST(ParticleSequence, KeepsTheNumberDensity) {
 // A vortex whose axis is in a corner of the volume moves particles in and out along curved paths.
 TEST(ParticleSequence, KeepsTheNumberDensityInAVortex) {
   constexpr double count = 4000;
-  FlowSetup flow = uniform_flow_of({});
+  FlowSetup flow = uniform_flow({});
   flow.flow.kind = RotationFlow{1e4, {4 * one_mm, 4 * one_mm, 0}};
-  ParticleSequence sequence(particles_in_cube(8 * one_mm), count, flow, sheet_over_all(), 1e-9);
+  ParticleSequence sequence(cube_of_particles(8 * one_mm), count, flow, wide_sheet(), 1e-9);
   EXPECT_NEAR(static_cast<double>(lit_places(sequence.pair(15), 0).size()), count, 5 * std::sqrt(count));
 }
 
 // Pairs do not depend on the order of the calls or on the number of threads.
 TEST(ParticleSequence, DependsOnTheSeedOnly) {
-  ParticleSetup setup = particles_in_cube(4 * one_mm);
-  auto const make = [&] {
-    return ParticleSequence(setup, 300, uniform_flow_of({60, 20, -30}), sheet_over_all(), 1e-12);
-  };
+  ParticleSetup setup = cube_of_particles(4 * one_mm);
+  auto const make = [&] { return ParticleSequence(setup, 300, uniform_flow({60, 20, -30}), wide_sheet(), 1e-12); };
   int const threads = thread_count();
   ParticleSequence first = make();
   Particles const expected = first.pair(5);
@@ -155,8 +132,7 @@ TEST(ParticleSequence, DependsOnTheSeedOnly) {
 
 // Particles that enter after a step were outside the volume before it, and are dark there.
 TEST(ParticleSequence, AddsParticlesFromOutside) {
-  ParticleSequence sequence(particles_in_cube(10 * one_mm), 2000, uniform_flow_of({100, 0, 0}), sheet_over_all(),
-                            1e-12);
+  ParticleSequence sequence(cube_of_particles(10 * one_mm), 2000, uniform_flow({100, 0, 0}), wide_sheet(), 1e-12);
   Particles const pair = sequence.pair(3);
   std::size_t entered = 0;
   for (std::size_t i = 0; i < pair.size(); ++i) {

@@ -9,33 +9,13 @@
 
 #include "render/base/parallel.h"
 #include "render/light/lambert_sphere.h"
+#include "tests/light/particle_cube.h"
 #include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
 
 constexpr double mm = 1e-3, um = 1e-6;
-
-FlowSetup uniform_flow(Vec3d velocity, double dt = 1e-5) {
-  FlowSetup flow;
-  flow.flow.uniform = velocity;
-  flow.dt = dt;
-  return flow;
-}
-
-ParticleSetup cube_of_particles(double side) {
-  ParticleSetup setup;
-  setup.volume = Vec3d{side, side, side};
-  return setup;
-}
-
-/// A sheet that illuminates the whole volume.
-LaserSheet<double> wide_sheet() {
-  LaserSetup laser;
-  laser.profile = SheetProfile::top_hat;
-  laser.thickness = laser.height = 1;
-  return laser_sheet(laser);
-}
 
 std::string csv(std::string const& name, std::string const& text) {
   std::string const path = testing::TempDir() + "/particles_" + name;

@@ -23,10 +23,6 @@ std::string zmx_of(std::initializer_list<std::string> blocks, std::string const&
   return text + '\n';
 }
 
-Lens broken_lens(std::string const& name, std::string const& text) {
-  return build_lens(read_prescription(file_of(name, text)), GlassCatalogue::shipped(), spectral_line::d);
-}
-
 // An equiconvex lens of N = 1.5, R = 60 mm, 4 mm thick, then one of R = 80 mm; model glass without dispersion.
 constexpr char const* front_face = "STOP\n  CURV 0.016666666666666667\n  DISZ 4\n  GLAS ___BLANK 1 0 1.5 0";
 constexpr char const* third_face = "CURV 0.0125\n  DISZ 4\n  GLAS ___BLANK 1 0 1.5 0";
@@ -47,7 +43,7 @@ TEST(CoordinateBreak, ItsThicknessIsAnAirspace) {
   double const f1 = thick_focal_length(1.5, 60, 4), f2 = thick_focal_length(1.5, 80, 4);
   double const d = 20 + 0.5 * f1 * 4 / (1.5 * 60) + 0.5 * f2 * 4 / (1.5 * 80);
   for (std::string const& text : {by_break, by_surface}) {
-    ParaxialLens const paraxial = paraxial_lens(broken_lens("air.zmx", text));
+    ParaxialLens const paraxial = paraxial_lens(read_lens("air.zmx", text));
     EXPECT_NEAR(paraxial.effective_focal_length * 1e3, f1 * f2 / (f1 + f2 - d), 1e-11);
   }
 }
@@ -55,8 +51,7 @@ TEST(CoordinateBreak, ItsThicknessIsAnAirspace) {
 // Ahead of the first surface, a break adds to the object distance: 100 + 20 mm, at any position of the break.
 TEST(CoordinateBreak, ItsThicknessAddsToTheObjectsDistance) {
   std::string const last = "CURV -0.016666666666666667\n  DISZ 0";
-  Lens const lens =
-      broken_lens("object.zmx", zmx_of({"TYPE COORDBRK\n  DISZ 20", front_face, last, image_block}, "100"));
+  Lens const lens = read_lens("object.zmx", zmx_of({"TYPE COORDBRK\n  DISZ 20", front_face, last, image_block}, "100"));
   EXPECT_NEAR(lens.prescription.object_distance, 0.12, 1e-16);
   EXPECT_EQ(lens.poses[0].origin.z, 0);
   ParaxialLens const paraxial = paraxial_lens(lens);
@@ -80,7 +75,7 @@ TEST(CoordinateBreak, AheadOfTheImageItTurnsTheImage) {
   std::string const by_break = zmx_of({"DISZ 170", paraboloid, turn + "0", flat, turn + "50", image_block});
   std::string const by_plane = zmx_of({"DISZ 170", paraboloid, turn + "0", flat, turn + "0", "DISZ 50", image_block});
   for (std::string const& text : {by_break, by_plane}) {
-    Lens lens = broken_lens("newton.zmx", text);
+    Lens lens = read_lens("newton.zmx", text);
     lens.prescription.field_angles = {0, 0.1 * unit::degree};
     ParaxialLens const paraxial = paraxial_lens(lens);
     EXPECT_NEAR(paraxial.effective_focal_length, 0.2, 1e-15);
@@ -101,10 +96,10 @@ TEST(CoordinateBreak, AheadOfTheImageItTurnsTheImage) {
 TEST(CoordinateBreak, ATiltedImageStaysInItsPlace) {
   std::string const last = "CURV -0.016666666666666667\n  DISZ 50";
   Lens const lens =
-      broken_lens("tilt.zmx", zmx_of({front_face, last, "TYPE COORDBRK\n  PARM 3 10\n  DISZ 0", image_block}));
+      read_lens("tilt.zmx", zmx_of({front_face, last, "TYPE COORDBRK\n  PARM 3 10\n  DISZ 0", image_block}));
   std::string const tilted =
       changed(changed(changed(seq, "SI 0.0 0.0", "SI 0.0 0.0; ADE -10"), "50.0 6.0", "60.0 4.0"), "47.0", "50.0");
-  for (Lens const& held : {lens, broken_lens("tilt.seq", tilted)}) {
+  for (Lens const& held : {lens, read_lens("tilt.seq", tilted)}) {
     EXPECT_EQ(analyse_field(held, paraxial_lens(held), 100).image_plane, 0);
     EXPECT_LT(length(held.poses.back().origin - Vec3d{0, 0, 0.054}), 1e-16);
     EXPECT_NEAR(std::abs(held.poses.back().z.y), std::sin(10 * unit::degree), 1e-15);

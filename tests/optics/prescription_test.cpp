@@ -22,8 +22,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 ParaxialLens paraxial_of(std::string const& name, std::string const& bytes) {
-  return paraxial_lens(
-      build_lens(read_prescription(file_of(name, bytes)), GlassCatalogue::shipped(), spectral_line::d));
+  return paraxial_lens(read_lens(name, bytes));
 }
 
 std::string utf16(std::string const& text, bool little) {

@@ -21,10 +21,14 @@ inline std::string file_of(std::string const& name, std::string const& bytes) {
   return path;
 }
 
+/// Writes a prescription and builds its lens with the shipped glasses, at the d line.
+inline Lens read_lens(std::string const& name, std::string const& bytes) {
+  return build_lens(read_prescription(file_of(name, bytes)), GlassCatalogue::shipped(), spectral_line::d);
+}
+
 /// Returns "CODE at PLACE" of the error in a file; empty if the file is accepted.
 inline std::string refusal(std::string const& name, std::string const& bytes) {
-  return error_of(
-      [&] { build_lens(read_prescription(file_of(name, bytes)), GlassCatalogue::shipped(), spectral_line::d); });
+  return error_of([&] { read_lens(name, bytes); });
 }
 
 /// Prescription of a biconvex singlet, R = 50 mm, t = 6 mm, N-BK7, in our format and in the formats of Zemax and CODE

@@ -209,7 +209,7 @@ TEST(BuildScene, MakesTheDotsOfTheTarget) {
   EXPECT_NEAR(static_cast<double>(regular.dots.centre.size()), setup.dot_count(), 0.08 * setup.dot_count());
   EXPECT_EQ(regular.dots.half_size, setup.dot_diameter() / 2);
   // to_pixel() and to_target() are inverse to each other, to the 1e-9 px at which Camera::unproject() stops, and equal
-  // the projection by a magnification, to the rounding of a ray
+  // the projection by a magnification, to a few roundings of the ray: 1e-16 m in 1 m are 1.3e-12 px
   double const scale = regular.imaging.magnification / setup.camera.pixel_pitch;
   Vec2d const px{12.5, 40.25}, seen = regular.to_target(px), back = regular.to_pixel(seen);
   EXPECT_LT(length(back - px), 1e-9);

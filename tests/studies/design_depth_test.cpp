@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"

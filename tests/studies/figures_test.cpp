@@ -18,26 +18,16 @@
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
 
-class Figures : public ::testing::Test {
+class Figures : public FolderFixture {
  protected:
-  Figures() {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("gladstone_figures_test_" + std::to_string(::getpid()) + "_" +
-                                                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~Figures() override { std::filesystem::remove_all(folder_); }
-  std::string path(std::string const& name) const { return (folder_ / name).string(); }
   std::size_t files() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 /// Number of pixels darker than 30 % grey in the upper and in the lower half of an image.
@@ -78,8 +68,8 @@ TEST_F(Figures, MapsHaveRowZeroAtTheTop) {
     figure.columns = 1;
     figure.axes = axes;
     figure.panels = {half_dark()};
-    draw_figure(make_map_figure(figure), path("map.png"));
-    DarkPixels const dark = dark_pixels(path("map.png"));
+    draw_figure(make_map_figure(figure), in_folder("map.png"));
+    DarkPixels const dark = dark_pixels(in_folder("map.png"));
     EXPECT_GT(dark.upper, 49000);
     EXPECT_LT(dark.lower, 8000);
   }
@@ -90,8 +80,8 @@ TEST_F(Figures, ConstantAndMissingMapsAreDrawn) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   NamedMaps const constant{"truth", Image<double>(8, 4, 0.0), Image<double>(8, 4, 2.0)};
   NamedMaps const missing{"measurement", Image<double>(8, 4, nan), Image<double>(8, 4, nan)};
-  draw_figure(make_displacement_maps("title", {}, {constant, missing}), path("maps.png"));
-  Image<double> const picture = read_image(path("maps.png"));
+  draw_figure(make_displacement_maps("title", {}, {constant, missing}), in_folder("maps.png"));
+  Image<double> const picture = read_image(in_folder("maps.png"));
   EXPECT_GT(picture.columns(), 700);
 }
 
@@ -99,10 +89,10 @@ TEST_F(Figures, SeedFigure4HasFiveColumnsAndTwoRowsAnInstant) {
   Image<double> map(16, 16, 1.0);
   map(3, 3) = -1.0;
   SeedFigure4Instant const instant{"t = 1", map, map, map, {"Eq. 9", map, map}, {"cone", map, map}, {"rays", map, map}};
-  draw_figure(make_seed_figure4({}, {instant}), path("one.png"));
-  draw_figure(make_seed_figure4({}, {instant, instant}), path("two.png"));
-  Image<double> const one = read_image(path("one.png"));
-  Image<double> const two = read_image(path("two.png"));
+  draw_figure(make_seed_figure4({}, {instant}), in_folder("one.png"));
+  draw_figure(make_seed_figure4({}, {instant, instant}), in_folder("two.png"));
+  Image<double> const one = read_image(in_folder("one.png"));
+  Image<double> const two = read_image(in_folder("two.png"));
   EXPECT_EQ(one.columns(), two.columns());
   EXPECT_GT(one.columns(), 5 * 200);
   EXPECT_GT(two.rows() - one.rows(), 2 * 200);
@@ -112,8 +102,8 @@ TEST_F(Figures, AgreementHasAPanelForCorrelationAndOneForTheRatio) {
   AgreementSeries series{"t = 1", {{0.5, 256, {0.5, 0.4}, {0.01, 0.02}}, {2, 64, {0.95, 0.8}, {0.01, 0.02}}}, {}};
   for (double const size : agreement_sizes()) series.prediction.push_back({size, {size / 10, size / 12}});
   draw_figure(make_agreement_figure({series, series}, std::vector<double>(agreement_sizes().size(), 0.5)),
-              path("agreement.png"));
-  EXPECT_GT(read_image(path("agreement.png")).columns(), 1000);
+              in_folder("agreement.png"));
+  EXPECT_GT(read_image(in_folder("agreement.png")).columns(), 1000);
   EXPECT_DOUBLE_EQ(agreement_sizes().front(), 0.2);
   EXPECT_NEAR(agreement_sizes().back(), 10, 1e-12);
 }
@@ -129,39 +119,40 @@ TEST_F(Figures, ErrorFiguresAreDrawnAlsoOfNothing) {
   }
   ErrorSeries const nothing{"against nothing",
                             std::vector<Vec2d>(400, Vec2d{std::numeric_limits<double>::quiet_NaN(), 0.0})};
-  draw_figure(make_error_histograms("errors", {series, nothing}), path("histogram.png"));
-  draw_figure(make_error_against_gradient("errors", truth, {series, nothing}), path("gradient.png"));
+  draw_figure(make_error_histograms("errors", {series, nothing}), in_folder("histogram.png"));
+  draw_figure(make_error_against_gradient("errors", truth, {series, nothing}), in_folder("gradient.png"));
   std::vector<BudgetStage> const stages{{"eq9", std::vector<Vec2d>(400)}, {"measured", series.error_px}};
-  draw_figure(make_budget_bars("budget", error_budget(stages, VectorMask(400, 1))), path("budget.png"));
+  draw_figure(make_budget_bars("budget", error_budget(stages, VectorMask(400, 1))), in_folder("budget.png"));
   for (char const* name : {"histogram.png", "gradient.png", "budget.png"}) {
-    EXPECT_GT(read_image(path(name)).columns(), 700) << name;
+    EXPECT_GT(read_image(in_folder(name)).columns(), 700) << name;
   }
   EXPECT_EQ(files(), 3u);
 }
 
 TEST_F(Figures, AbsentGnuplotIsNamedWithItsPackage) {
   std::string const before = ::getenv("PATH") != nullptr ? ::getenv("PATH") : "";
-  ::setenv("PATH", path("").c_str(), 1);
-  EXPECT_THROW(draw_figure({.width_px = 100, .height_px = 100, .panels = {{.box = {10, 90, 10, 90}}}}, path("x.png")),
-               GnuplotMissing);
+  ::setenv("PATH", in_folder("").c_str(), 1);
+  EXPECT_THROW(
+      draw_figure({.width_px = 100, .height_px = 100, .panels = {{.box = {10, 90, 10, 90}}}}, in_folder("x.png")),
+      GnuplotMissing);
   ::setenv("PATH", before.c_str(), 1);
   EXPECT_EQ(files(), 0u);
 }
 
 TEST_F(Figures, FailureLeavesTheOldPicture) {
-  std::ofstream(path("x.png")) << "old";
+  std::ofstream(in_folder("x.png")) << "old";
   GnuplotScript script;
   script.command("plot nonsense(");
-  EXPECT_THAT([&] { script.write(path("x.png"), 100, 100, "'DejaVu Sans,11'"); }, ThrowsOutputError("x.png"));
+  EXPECT_THAT([&] { script.write(in_folder("x.png"), 100, 100, "'DejaVu Sans,11'"); }, ThrowsOutputError("x.png"));
   std::string text;
-  std::ifstream(path("x.png")) >> text;
+  std::ifstream(in_folder("x.png")) >> text;
   EXPECT_EQ(text, "old");
   EXPECT_EQ(files(), 1u);
 }
 
 TEST_F(Figures, AFolderThatCannotBeIsAnOutputError) {
-  std::ofstream(path("file")) << "no folder";
-  EXPECT_THROW(draw_figure({.width_px = 100, .height_px = 100}, path("file/x.png")), OutputError);
+  std::ofstream(in_folder("file")) << "no folder";
+  EXPECT_THROW(draw_figure({.width_px = 100, .height_px = 100}, in_folder("file/x.png")), OutputError);
 }
 
 // d = A x with A = [[3, 0], [4, 5]] / 1000: A^T A = [[25, 20], [20, 25]] / 1e6 has eigenvalues 45e-6 and 5e-6.
@@ -191,11 +182,11 @@ TEST_F(Figures, OfADensityProfileNameItsLargestDeviation) {
   EXPECT_EQ(describe_density_profile(ramp),
             "Density with its standard uncertainty at y = -1 mm, through the largest deviation from the reference of "
             "1.2 kg/m^3: 1.6 +- 0.01 kg/m^3 at x = 2 mm.");
-  draw_figure(make_density_profile(ramp), path("profile.png"));
-  EXPECT_TRUE(std::filesystem::exists(path("profile.png")));
+  draw_figure(make_density_profile(ramp), in_folder("profile.png"));
+  EXPECT_TRUE(std::filesystem::exists(in_folder("profile.png")));
   ramp.sigma.assign(15, std::numeric_limits<double>::quiet_NaN());
   ramp.density.assign(15, std::numeric_limits<double>::quiet_NaN());
-  draw_figure(make_density_profile(ramp), path("empty.png"));
+  draw_figure(make_density_profile(ramp), in_folder("empty.png"));
 }
 
 }  // namespace

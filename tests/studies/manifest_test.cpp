@@ -45,10 +45,6 @@ std::string leave_partial(std::string const& folder, std::string const& stem) {
 
 class Runs : public StudyFolder {
  protected:
-  std::string content(std::string const& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
   /// Plans into "run".
   std::vector<ManifestCase> planned(std::string const& text = two_axes) const {
     StudyPlan const plan = plan_study(study(text), "cpu");
@@ -111,7 +107,7 @@ TEST_F(Runs, LabelsOfNumbersStandInTheManifestAndInTheTables) {
 TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   EXPECT_EQ(reading_fails(), "wrong_format at run");
   planned();
-  std::string const whole = content("run/manifest.jsonl");
+  std::string const whole = content(folder_ / "run/manifest.jsonl");
   write("run/manifest.jsonl", whole.substr(0, whole.size() - 40));
   EXPECT_EQ(reading_fails(), "damaged at manifest.jsonl:4");
   std::size_t const second = whole.find('\n') + 1;
@@ -141,7 +137,7 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
 // Any changed digit is detected, in a parameter as in the text of the setup, although the line is still JSON.
 TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
   auto const cases = planned();
-  std::string const whole = content("run/manifest.jsonl");
+  std::string const whole = content(folder_ / "run/manifest.jsonl");
   std::size_t const second = whole.find('\n') + 1;
   auto const complaint_about = [&](std::string const& text, std::size_t index) {
     write("run/manifest.jsonl", text);
@@ -162,7 +158,7 @@ TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
   write_result(in("run"), result_of(cases[1], 0.5));
   StudyPlan const again = plan_study(study(two_axes), "cpu");
   EXPECT_EQ(write_plan(in("run"), again), PlanOutcome::replaced);
-  EXPECT_EQ(content("run/manifest.jsonl"), whole);
+  EXPECT_EQ(content(folder_ / "run/manifest.jsonl"), whole);
   EXPECT_TRUE(read_result(in("run"), 1, again[1].line_hash).has_value());
 }
 
@@ -203,7 +199,7 @@ TEST_F(Runs, InterruptedPlanIsReplaced) {
   std::string const partial = leave_partial(in("cut"), sibling_stem(run_file::manifest));
   write("cut/study.toml", "of somebody else");
   EXPECT_THROW(write_plan(in("cut"), plan), OutputError);
-  EXPECT_EQ(content("cut/study.toml"), "of somebody else");
+  EXPECT_EQ(content(folder_ / "cut/study.toml"), "of somebody else");
 
   std::filesystem::create_directories(in("cut/cases"));
   write("cut/claims", "");
@@ -220,7 +216,7 @@ TEST_F(Runs, InterruptedPlanIsReplaced) {
 TEST_F(Runs, TheBaseIsKeptBesideTheManifest) {
   StudyPlan const plan = plan_study(study(two_axes), "cpu");
   EXPECT_EQ(write_plan(in("run"), plan), PlanOutcome::fresh);
-  SetupDocument base = SetupDocument::from_text(content("run/base.toml"), "base");
+  SetupDocument base = SetupDocument::from_text(content(folder_ / "run/base.toml"), "base");
   ASSERT_NE(base.find({"lens", "f_number"}), nullptr);
   EXPECT_EQ(base.find({"lens", "f_number"})->as_double(), 11);
   EXPECT_EQ(load_case_setup(std::move(base)).setup.camera.columns, 64);
@@ -232,7 +228,7 @@ TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
   for (std::string const foreign : {"{\"name\":\"a package\",\"version\":3}\n", "first line\nsecond line\n", ""}) {
     write("package/manifest.jsonl", foreign);
     EXPECT_EQ(error_of([&] { write_plan(in("package"), plan); }), "output at manifest.jsonl") << foreign;
-    EXPECT_EQ(content("package/manifest.jsonl"), foreign);
+    EXPECT_EQ(content(folder_ / "package/manifest.jsonl"), foreign);
   }
   // planned by another gladstone, and nothing computed: planned again
   write("package/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
@@ -300,7 +296,7 @@ TEST_F(Runs, ResultOfOtherVersionIsPreserved) {
   for (std::function<void()> const& use : uses) {
     EXPECT_EQ(error_of(use), "unsupported at 2.json");
   }
-  EXPECT_EQ(content("run/cases/2.json"), older);
+  EXPECT_EQ(content(folder_ / "run/cases/2.json"), older);
 }
 
 // Linux opens a folder like a file and fails when reading it, as for the memory of a process at address 0.

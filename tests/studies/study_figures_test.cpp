@@ -6,13 +6,13 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
 #include "render/files/image_file.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/study_cells.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
@@ -79,15 +79,8 @@ StudyTable one_value_a_point(std::size_t count, std::size_t step) {
   return table;
 }
 
-class StudyFigures : public ::testing::Test {
+class StudyFigures : public FolderFixture {
  protected:
-  StudyFigures()
-      : folder_(std::filesystem::path(::testing::TempDir()) /
-                (std::string("gladstone_study_figures_") +
-                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    std::filesystem::remove_all(folder_);
-  }
-  ~StudyFigures() override { std::filesystem::remove_all(folder_); }
   /// Names of the drawn figures.
   std::vector<std::string> draw(StudyTable const& table) const {
     std::vector<std::string> names;
@@ -97,12 +90,6 @@ class StudyFigures : public ::testing::Test {
     }
     return names;
   }
-  std::string text(std::string const& name) const {
-    std::ostringstream all;
-    all << std::ifstream(folder_ / name).rdbuf();
-    return all.str();
-  }
-  std::filesystem::path folder_;
 };
 
 TEST(AxisTitle, ComesFromTheKeyWithItsUnit) {
@@ -186,13 +173,13 @@ TEST_F(StudyFigures, AreCurvesBudgetsAndMapsInTwoFormats) {
                           "error_against_geometry_z_d_mm.svg", "budget_geometry_z_d_mm.png",
                           "budget_geometry_z_d_mm.svg", "repeats_geometry_z_d_mm.png", "repeats_geometry_z_d_mm.svg"));
   EXPECT_GT(read_image((folder_ / names[0]).string()).columns(), 700);
-  std::string const svg = text("error_against_lens_f_number.svg");
+  std::string const svg = content(folder_ / "error_against_lens_f_number.svg");
   for (char const* piece : {"Error against f-number", "Z_D 200 mm", "measured − Eq. 9", "study some_study, 12 cases",
                             "root mean square over 2 repeats"}) {
     EXPECT_THAT(svg, HasSubstr(piece));
   }
   // Cell (f/4, 200 mm) has cases 1 and 7, errors 0.02 and 0.08: sqrt((4 + 64) / 2) / 100 = 0.058.
-  EXPECT_THAT(text("error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr("0.058"));
+  EXPECT_THAT(content(folder_ / "error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr("0.058"));
 }
 
 // A single case has no pattern term; with repeats the budget has one, and a figure shows both parts.
@@ -206,7 +193,8 @@ TEST_F(StudyFigures, TellEstimatorAndPatternApartWithRepeats) {
     }
     std::vector<std::string> const names = draw(table);
     EXPECT_EQ(testing::Matches(testing::Contains("repeats_lens_f_number.svg"))(names), repeats > 1);
-    EXPECT_EQ(testing::Matches(HasSubstr("below the axis: pattern"))(text("budget_lens_f_number.svg")), repeats == 1);
+    EXPECT_EQ(testing::Matches(HasSubstr("below the axis: pattern"))(content(folder_ / "budget_lens_f_number.svg")),
+              repeats == 1);
     std::filesystem::remove_all(folder_);
   }
 }
@@ -217,8 +205,8 @@ TEST_F(StudyFigures, OfParticlesShowTheErrorAgainstTheFlow) {
   table.measures[1] = "flow.rms_px";
   draw(table);
   for (char const* figure : {"error_against_lens_f_number.svg", "error_map_lens_f_number_geometry_z_d_mm.svg"}) {
-    EXPECT_THAT(text(figure), HasSubstr("measured − flow")) << figure;
-    EXPECT_THAT(text(figure), Not(HasSubstr("Eq. 9"))) << figure;
+    EXPECT_THAT(content(folder_ / figure), HasSubstr("measured − flow")) << figure;
+    EXPECT_THAT(content(folder_ / figure), Not(HasSubstr("Eq. 9"))) << figure;
   }
 }
 
@@ -240,13 +228,16 @@ TEST(StudyFigureMaker, ComparesTheCoverageWithThatOfNormalErrors) {
 TEST(StudyFigureMaker, PlotsAPointForEveryFinishedCase) {
   StudyTable table = grid({numbers("lens.f_number", {4, 8, 16})}, 1);
   table.rows[0].status = CaseStatus::failed;
-  std::optional<Figure> const figure = StudyFigureMaker(table).make_case_points("ray_truth.rms_px", "eq9.rms_px");
+  for (StudyRow& row : table.rows) row.measures[2] = 0.25 * static_cast<double>(row.index);  // signal
+  std::optional<Figure> const figure = StudyFigureMaker(table).make_case_points();
   ASSERT_TRUE(figure);
   plot::Layer const& points = figure->panels.front().layers.front();
-  EXPECT_THAT(points.columns[0], ElementsAre(0.02, 0.03));
+  EXPECT_THAT(points.columns[0], ElementsAre(0.25, 0.5));
   EXPECT_THAT(points.columns[1], ElementsAre(0.04, 0.06));
-  EXPECT_EQ(points.notes[1], "case 2\nf-number: 16\nray_truth.rms_px [px]: 0.03\neq9.rms_px [px]: 0.06");
-  EXPECT_FALSE(StudyFigureMaker(table).make_case_points("flow.rms_px", "eq9.rms_px"));
+  EXPECT_EQ(points.notes[1], "case 2\nf-number: 16\nsignal: 0.5 px\nmeasured − Eq. 9: 0.06 px");
+  EXPECT_EQ(figure->panels.front().y.label, "measured − Eq. 9, rms per component [px]");
+  table.measures[2] = "other_px";
+  EXPECT_FALSE(StudyFigureMaker(table).make_case_points()) << "a study without signals";
 }
 
 TEST_F(StudyFigures, LeaveOutWhatIsNotThere) {
@@ -272,7 +263,7 @@ TEST_F(StudyFigures, AxesThatGoTogetherHaveNoMap) {
 // 0.05, 0.08: median 0.035.
 TEST_F(StudyFigures, SampledAxesHaveAMap) {
   draw(one_value_a_point(24, 7));
-  EXPECT_THAT(text("error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr(">0.035<"));
+  EXPECT_THAT(content(folder_ / "error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr(">0.035<"));
   EXPECT_EQ(StudyCells(one_value_a_point(24, 7)).axis(0).size(), 12u);  // along one axis
   EXPECT_EQ(sampled_places_in_maps(1000), 12u);
 }
@@ -280,7 +271,7 @@ TEST_F(StudyFigures, SampledAxesHaveAMap) {
 TEST_F(StudyFigures, AreDrawnOfAPinholeToo) {
   EXPECT_EQ(draw(grid({numbers("lens.f_number", {8, 16, HUGE_VAL}), numbers("geometry.z_d_mm", {100, 200})}, 2)).size(),
             14u);
-  EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr(">inf<"));
+  EXPECT_THAT(content(folder_ / "error_against_lens_f_number.svg"), HasSubstr(">inf<"));
 }
 
 TEST_F(StudyFigures, ShowTheLabelsOfNumbers) {
@@ -289,7 +280,7 @@ TEST_F(StudyFigures, ShowTheLabelsOfNumbers) {
   axis.labelled = true;
   draw(grid({axis}, 1));
   for (char const* label : {">wide open<", ">the sharpest stop<", ">one a little smaller<"}) {
-    EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr(label));
+    EXPECT_THAT(content(folder_ / "error_against_lens_f_number.svg"), HasSubstr(label));
   }
 }
 
@@ -299,7 +290,7 @@ TEST_F(StudyFigures, ShowPercentSignsInLabels) {
             1));
   for (char const* figure : {"error_against_lens_psf", "budget_lens_psf", "error_map_lens_psf_medium_field"}) {
     for (char const* label : {">50 % stop<", ">100 %<", ">5 %% of it<", ">9 % up<", ">9 % down<"}) {
-      EXPECT_THAT(text(std::string(figure) + ".svg"), HasSubstr(label));
+      EXPECT_THAT(content(folder_ / (std::string(figure) + ".svg")), HasSubstr(label));
     }
   }
 }
@@ -308,7 +299,7 @@ TEST_F(StudyFigures, ManyValuesAreBinned) {
   std::vector<double> many;
   for (int i = 0; i < 60; ++i) many.push_back(4.0 + i);
   EXPECT_EQ(draw(grid({numbers("lens.f_number", many)}, 1)).size(), 4u);
-  EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr("medians of the cases"));
+  EXPECT_THAT(content(folder_ / "error_against_lens_f_number.svg"), HasSubstr("medians of the cases"));
 }
 
 }  // namespace

@@ -4,9 +4,16 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 namespace gladstone {
+
+/// Returns the content of a file.
+inline std::string content(std::filesystem::path const& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 /// Fixture that creates a new folder for each test.
 class FolderFixture : public testing::Test {

@@ -1,8 +1,9 @@
-#include <algorithm>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "analysis/preparation/frame_changes.h"
 #include "analysis/preparation/grey_levels.h"
+#include "render/base/median.h"
 
 namespace gladstone::inline preparation {
 
@@ -13,11 +14,9 @@ FrameChange make_intensity_cap(double deviations) {
       for (int j = 0; j < levels.rows; ++j)
         for (int i = 0; i < levels.cols; ++i)
           if (known(j, i) != 0.0) values.push_back(levels(j, i));
-      auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
       cv::Scalar mean, deviation;
       cv::meanStdDev(levels, mean, deviation, known > 0.5);
-      cv::min(levels, *middle + deviations * deviation[0], levels);
+      cv::min(levels, upper_median(std::move(values)) + deviations * deviation[0], levels);
     });
   };
 }

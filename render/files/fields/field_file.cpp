@@ -1,6 +1,5 @@
 #include "render/files/fields/field_file.h"
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 

@@ -6,7 +6,6 @@
 #include "render/base/units.h"
 #include "render/scene/cross_check.h"
 #include "render/scene/cross_check_particles.h"
-#include "render/scene/particle_scene.h"
 #include "render/scene/setup.h"
 
 namespace gladstone::inline scene {

@@ -49,10 +49,11 @@ CaseWriter render_pair(CaseSetup& loaded, Renderer& renderer, ReusableParts cons
   entry.magnification = finished->prepared.scene.imaging.magnification;
   entry.exposure_e = finished->rendered.exposure_e;
   entry.seconds = finished->rendered.seconds;
-  entry.device = rendering.device.empty() ? renderer.device() : rendering.device;
+  entry.device = rendering.device;
   medium = finished->prepared.scene.medium;
-  return [&loaded, &renderer, finished](std::string const& folder) {
-    return write_case(loaded, finished->prepared, finished->rendered, finished->frames, renderer, folder);
+  return [&loaded, finished](std::string const& folder) {
+    auto const& [prepared, rendered, frames] = *finished;
+    return write_case(loaded, prepared, rendered, frames, judge_case(loaded, prepared, rendered, frames), folder);
   };
 }
 

@@ -9,9 +9,7 @@
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <thread>
@@ -20,11 +18,6 @@
 #include "render/files/stop_point.h"
 
 namespace gladstone::end_to_end {
-
-inline std::string content(std::filesystem::path const& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Outcome of a run of the program.
 struct Outcome {

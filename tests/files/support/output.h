@@ -6,19 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "tests/support/folder_fixture.h"
 
 namespace gladstone {
-
-inline std::string content(std::filesystem::path const& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// RAII guard that limits the size of files in this process, so that writing fails as on a full disk.
 class FileSizeLimit {
