@@ -528,7 +528,7 @@ TEST(SetupDocument, ARemovedKeyIsUnknownToTheReader) {
   auto setup = document("[target]\nfile = \"a.csv\"\nsize = 2\n[[camera]]\nbits = 12\n");
   setup.remove({"target", "size"});
   setup.remove({"camera", "bits"});
-  for (std::vector<std::string> const absent : {std::vector<std::string>{"target", "colour"}, {"medium", "field"}}) {
+  for (std::vector<std::string> const& absent : {std::vector<std::string>{"target", "colour"}, {"medium", "field"}}) {
     setup.remove(absent);
   }
   EXPECT_FALSE(setup.find({"target", "size"}));

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "render/files/stop_point.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone::end_to_end {
 
