@@ -67,7 +67,7 @@ void bind_case(nb::module_& module) {
           nb::arg("folder"))
       .def_prop_ro("camera", &PairCase::camera)
       .def_prop_ro("folder", &PairCase::folder)
-      .def_prop_ro("is_piv", [](PairCase const& self) { return &self.loaded().setup.experiment() == &piv_experiment; })
+      .def_prop_ro("is_piv", [](PairCase const& self) { return !self.loaded().setup.experiment().sources.on_target; })
       .def("images",
            [](nb::handle_t<PairCase> self) {
              auto& held = nb::cast<PairCase&>(self);

@@ -86,8 +86,9 @@ std::vector<Row> const& rows() {
       {"kind of experiment",
        "render/scene/experiments",
        std::regex("\\bExperiment const (\\w+_experiment)\\{"),
-       // the list, the experiment of a setup in memory, and the rows of an overview
-       {"render/scene/experiment.h", "render/scene/experiment.cpp", "studies/design/setup_overview.cpp"},
+       // the list, the experiment of a setup in memory, and the rows of overview, design sheet and layout
+       {"render/scene/experiment.h", "render/scene/experiment.cpp", "studies/design/setup_overview.cpp",
+        "studies/design/design.cpp", "studies/report/layout_view.cpp"},
        // the cases and comparisons of the experiment, and commands for this experiment alone
        {{"bos_experiment",
          {"studies/case/kinds/bos.cpp", "studies/compare/kinds/bos.cpp", "studies/compare/reconstruct_case.cpp",

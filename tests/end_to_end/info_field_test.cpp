@@ -50,7 +50,7 @@ TEST_F(InfoField, OfASliceIsOnePlane) {
 
 TEST_F(InfoField, RefusesFiguresThatCannotBe) {
   write_field("field.vtk", 6, 5, 4);
-  expect_error({"info", "field", "field.vtk", "--figure", "field.vtk"}, 2, "output at field.vtk");
+  expect_error({"info", "field", "field.vtk", "--figure", "field.vtk"}, 2, "overwrites_input at field.vtk");
   write_field("line.vtk", 6, 1, 1);
   Outcome const line = gladstone({"info", "field", "line.vtk", "--figure", "planes.svg"});
   EXPECT_EQ(line.exit_code, 2);

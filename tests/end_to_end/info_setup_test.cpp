@@ -156,7 +156,7 @@ TEST_F(InfoSetup, RefusesBadInput) {
   write("bad.toml", with(small_setup, "f_number = 11.0", "f_number = -1"));
   expect_error({"info", "setup", "bad.toml"}, 2, "out_of_range at bad.toml:10:1");
   expect_error({"info", "setup"}, 2, "arguments at info setup");
-  expect_error({"info", "setup", "setup.toml", "--figure", "setup.toml"}, 2, "output at setup.toml");
+  expect_error({"info", "setup", "setup.toml", "--figure", "setup.toml"}, 2, "overwrites_input at setup.toml");
   expect_error({"info", "setup", "setup.toml", "--figure", "layout.gif"}, 2, "output at layout.gif");
 }
 

@@ -433,7 +433,7 @@ TEST_F(Runs, PartialResultsOfKilledWritersAreRemovedAndOthersAreLeftAlone) {
   remove_abandoned_results(in("run"));
   EXPECT_FALSE(std::filesystem::exists(killed));
   EXPECT_TRUE(std::filesystem::exists(mine.path()));
-  EXPECT_EQ(content(elsewhere), "{\"hash\":\"half");
+  EXPECT_EQ(content(folder_ / elsewhere), "{\"hash\":\"half");
   EXPECT_EQ(collect_study(in("run")).unfinished(), (std::vector<std::size_t>{0, 2, 3}));
   EXPECT_TRUE(read_result(in("run"), 1, cases[1].line_hash).has_value());
 }
