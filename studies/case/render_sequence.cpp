@@ -244,7 +244,8 @@ SetupDocument with_first_pair(SetupDocument document) {
   SetupNode const* const sequence = document.find({"sequence"});
   if (!sequence || sequence->kind != SetupNode::Kind::table || sequence->find("pair")) return document;
   SetupNode const* const experiment = document.find({"experiment"});
-  bool const consecutive = experiment && experiment->text == piv_experiment.name;
+  // particles move from frame to frame; dots are recorded once without medium
+  bool const consecutive = experiment && !find_experiment(experiment->text).sources.on_target;
   if (!consecutive && !sequence->find("files")) return document;
   SetupNode first = setup_integer(consecutive ? 0 : 1);
   first.place = sequence->place;
