@@ -230,7 +230,7 @@ DetectedDots find_dots(Image<double> const& picture) {
 }  // namespace
 
 DetectedDots detect_dots(Image<double> const& picture) {
-  return call_opencv(ErrorCode::internal, "detect dots", [&] { return find_dots(picture); });
+  return call_opencv(ErrorCode::internal, "image", "detect dots", [&] { return find_dots(picture); });
 }
 
 }  // namespace gladstone::inline calibration

@@ -12,7 +12,7 @@ void fourier_transform(std::vector<std::complex<double>> const& in, std::vector<
   GLADSTONE_EXPECTS(in.size() == static_cast<std::size_t>(size) * size && out.size() == in.size());
   cv::Mat const from(size, size, CV_64FC2, const_cast<std::complex<double>*>(in.data()));
   cv::Mat to(size, size, CV_64FC2, out.data());
-  call_opencv(ErrorCode::internal, "compute a Fourier transform",
+  call_opencv(ErrorCode::internal, "image", "compute a Fourier transform",
               [&] { cv::dft(from, to, direction == FourierDirection::inverse ? cv::DFT_INVERSE : 0); });
 }
 

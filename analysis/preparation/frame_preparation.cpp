@@ -34,7 +34,7 @@ HostFrames prepare_frames(StoredFrames const& frames, FramePreparation const& pr
   for (std::size_t i = 0; i < reference.size(); ++i)
     if (!std::isfinite(reference.data()[i]) || !std::isfinite(flow.data()[i])) prepared.known.data()[i] = 0.0;
   fill_unknown(prepared);
-  call_opencv(ErrorCode::internal, "prepare the frames", [&] {
+  call_opencv(ErrorCode::internal, "image", "prepare the frames", [&] {
     for (FrameChange const& mask : preparation.masks) mask(prepared);
     fill_unknown(prepared);
     for (FrameChange const& step : preparation.steps) step(prepared);

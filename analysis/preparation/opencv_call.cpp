@@ -7,14 +7,16 @@
 
 namespace gladstone::inline preparation {
 
-void rethrow_opencv_error(ErrorCode code, std::string_view task) {
+void rethrow_opencv_error(ErrorCode code, std::string const& place, std::string_view task) {
   try {
     throw;
   } catch (cv::Exception const& error) {
     if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();
-    throw DataError(code, "image",
-                    fmt::format("OpenCV cannot {} ({}); use other images, and report this error with the command line",
-                                task, error.err));
+    throw DataError(
+        code, place,
+        fmt::format(
+            "OpenCV cannot {} ({}){}", task, error.err,
+            code == ErrorCode::internal ? "; use other images, and report this error with the command line" : ""));
   }
 }
 

@@ -36,7 +36,7 @@ Image<double> filtered(Image<double> const& levels, double sigma) {
     if (!std::isfinite(level)) level = 0;
   cv::Mat1d out = matrix_view<cv::Mat1d>(smooth);
   int const side = filter_side(sigma);
-  call_opencv(ErrorCode::internal, "filter the frames", [&] {
+  call_opencv(ErrorCode::internal, "image", "filter the frames", [&] {
     cv::GaussianBlur(matrix_view<cv::Mat1d>(known), out, {side, side}, sigma, sigma, cv::BORDER_REFLECT_101);
   });
   return smooth;
@@ -44,7 +44,7 @@ Image<double> filtered(Image<double> const& levels, double sigma) {
 
 /// Returns the factor by which the filter reduces the standard deviation of uncorrelated noise.
 double noise_reduction(double sigma) {
-  return call_opencv(ErrorCode::internal, "filter the frames", [&] {
+  return call_opencv(ErrorCode::internal, "image", "filter the frames", [&] {
     cv::Mat const kernel = cv::getGaussianKernel(filter_side(sigma), sigma, CV_64F);
     // for a separable kernel, equals the root of the sum of squares of the two-dimensional kernel
     return kernel.dot(kernel);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 namespace gladstone::inline vectors {
 namespace {
@@ -43,6 +44,17 @@ Kind find_verdict_kind(std::string_view code) {
   auto const found =
       std::find_if(all_words.begin(), all_words.end(), [code](Words const& words) { return words.code == code; });
   return found == all_words.end() ? Kind::not_tested : found->kind;
+}
+
+PairVerdict find_verdict(std::string_view text) {
+  for (Words const& words : all_words) {
+    std::string_view const pattern = words.text, prefix = pattern.substr(0, pattern.find('{'));
+    if (!text.starts_with(prefix)) continue;
+    std::string const number(text.substr(prefix.size()));
+    PairVerdict const verdict{words.kind, prefix == pattern ? 0.0 : std::strtod(number.c_str(), nullptr)};
+    if (verdict_text(verdict) == text) return verdict;
+  }
+  return {};
 }
 
 std::string verdict_text(PairVerdict const& verdict) {

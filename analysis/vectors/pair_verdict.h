@@ -32,6 +32,10 @@ std::string_view verdict_code(PairVerdict::Kind kind);
 /// Returns the kind of a name; not_tested if there is none.
 PairVerdict::Kind find_verdict_kind(std::string_view code);
 
+/// Returns the verdict of a text of verdict_text(), with the digits that the text shows of its number; not_tested for
+/// any other text.
+PairVerdict find_verdict(std::string_view text);
+
 /// Words a verdict: "correlates", "does not correlate" or "not judged: REASON"; empty for not_tested.
 std::string verdict_text(PairVerdict const& verdict);
 

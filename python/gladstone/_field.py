@@ -174,6 +174,19 @@ class Field:
         return self._core.verdict
 
     @property
+    def verdict_code(self) -> str:
+        """The verdict as a code: "correlates", "uncorrelated" or, if the pair is not judged, the reason:
+        "identical_frames", "masked", "no_signal", "optical_flow", "few_windows", "no_median_test", "periodic" or
+        "no_valid_vector"; "": not tested."""
+        return self._core.verdict_code
+
+    @property
+    def verdict_number(self) -> float:
+        """Number of the verdict: the required number of windows for "few_windows", the period of the pattern [px] for
+        "periodic", otherwise 0."""
+        return self._core.verdict_number
+
+    @property
     def uncertainty_method(self) -> str:
         """Method that estimated sigma_u and sigma_v: a value of correlate.uncertainty, or "dot_fit" of tracked dots;
         "none": not estimated, "": unknown."""

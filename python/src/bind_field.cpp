@@ -190,6 +190,9 @@ void bind_field(nb::module_& module) {
       .def_prop_ro("rows", [](MeasuredField const& self) { return self.field.rows; })
       .def_prop_ro("warnings", [](MeasuredField const& self) { return warning_texts(self.field.warnings); })
       .def_prop_ro("verdict", [](MeasuredField const& self) { return verdict_text(self.field.verdict); })
+      .def_prop_ro("verdict_code",
+                   [](MeasuredField const& self) { return std::string(verdict_code(self.field.verdict.kind)); })
+      .def_prop_ro("verdict_number", [](MeasuredField const& self) { return self.field.verdict.number; })
       .def_prop_ro("uncertainty_method", [](MeasuredField const& self) { return self.field.uncertainty_method; })
       .def_prop_ro("uncertainty_key", [](MeasuredField const& self) { return self.field.uncertainty_key; })
       .def_rw("name", &MeasuredField::name)

@@ -76,7 +76,7 @@ def test_fields_and_loaded_cases_survive_pickle(case, field, tmp_path):
     again = pickle.loads(pickle.dumps(field))
     for name in ("x", "y", "u", "v", "sigma_u", "status", "peak_ratio", "correlation"):
         assert np.array_equal(getattr(again, name), getattr(field, name), equal_nan=True), name
-    for name in ("settings", "warnings", "verdict", "device", "seconds", "uncertainty_method"):
+    for name in ("settings", "warnings", "verdict", "verdict_code", "device", "seconds", "uncertainty_method"):
         assert getattr(again, name) == getattr(field, name), name
     assert case.compare(again, device="cpu").errors == case.compare(field, device="cpu").errors
     arrays = gs.Field(field.x, field.y, field.u, field.v)

@@ -31,6 +31,17 @@ def test_vectors_equal_those_of_the_program(field, case, written_case):
     assert field.verdict == written.verdict == "correlates"
 
 
+def test_verdict_is_data(case, tmp_path):
+    assert gs.correlate(case.a, case.a, device="cpu", **SETTINGS).verdict_code == "identical_frames"
+    noise = np.random.default_rng(1).uniform(0, 1000, (64, 64))
+    one_window = gs.correlate(noise, np.roll(noise, 1, axis=1), device="cpu", window=[64])
+    one_window.save(tmp_path / "vectors.h5")
+    for field in (one_window, gs.Field.load(tmp_path / "vectors.h5")):
+        assert (field.verdict_code, field.verdict_number) == ("few_windows", 4.0), field.verdict
+    arrays = gs.Field(field.x, field.y, field.u, field.v)
+    assert (arrays.verdict, arrays.verdict_code, arrays.verdict_number) == ("", "", 0.0)
+
+
 @pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int32, np.uint32, np.int64, np.uint64])
 def test_images_of_any_type(field, case, dtype):
     assert same(gs.correlate(case.a.astype(dtype), case.b.astype(dtype), device="cpu", **SETTINGS).u, field.u)

@@ -100,7 +100,7 @@ def test_masks_and_references(bos, field, codes, refused):
 
 
 def test_problems_are_reported(bos, field, codes, refused):
-    with refused(gs.SetupError, "invalid_value at reference"):
+    with refused(gs.SetupError, "arguments at reference"):
         gs.reconstruct(field, bos, device="cpu")
     with refused(gs.SetupError, "invalid_value at reference", "middle"):
         gs.reconstruct(field, bos, reference="middle", device="cpu")

@@ -78,11 +78,11 @@ def test_options_change_the_volume(result, views):
 
 
 def test_problems_are_reported(views, refused):
-    with refused(gs.SetupError, "invalid_value at reference"):
+    with refused(gs.SetupError, "arguments at reference"):
         gs.tomography(views, device="cpu")
-    with refused(gs.SetupError, "invalid_value at views", "3 to 16"):
+    with refused(gs.SetupError, "arguments at views", "3 to 16"):
         gs.tomography(views[:2], reference="left", device="cpu")
-    with refused(gs.SetupError, "invalid_value at angles_deg"):
+    with refused(gs.SetupError, "arguments at angles_deg"):
         gs.tomography(views, reference="left", angles_deg=(0, 60), device="cpu")
     with pytest.raises(ValueError, match="bounds_mm"):
         gs.tomography(views, bounds_mm=(0, 0, 0), **GAUGE)

@@ -84,7 +84,7 @@ void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const
     warnings.insert(warnings.end(), lens->warnings.begin(), lens->warnings.end());
     setup.prescription = lens;
   } catch (SetupError const& error) {
-    table.problem("file", error.what(), error.code());
+    for (SetupProblem const& one : error.problems()) table.problem("file", one.where + ": " + one.message, one.code);
   } catch (DataError const& error) {
     table.problem("file", error.what(), error.code());
   }

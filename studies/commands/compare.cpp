@@ -118,10 +118,12 @@ bool is_existing_file(std::string const& path) {
 /// Throws if options are given that do not apply to three components.
 void refuse_options_of_cases(CompareOptions const& compare, std::string const& output) {
   std::vector<SetupProblem> problems;
-  char const* const reason = "has no effect on a file of three components; remove it";
-  if (!compare.vectors.empty()) problems.push_back({"--vectors", reason});
-  if (!output.empty()) problems.push_back({"--output", reason});
-  if (compare.conventions) problems.push_back({"--conventions", reason});
+  auto const refuse = [&](char const* option) {
+    problems.push_back({option, "has no effect on a file of three components; remove it", "", ErrorCode::arguments});
+  };
+  if (!compare.vectors.empty()) refuse("--vectors");
+  if (!output.empty()) refuse("--output");
+  if (compare.conventions) refuse("--conventions");
   if (!problems.empty()) throw SetupError(std::move(problems));
 }
 

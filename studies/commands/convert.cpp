@@ -58,16 +58,16 @@ Description convert_density(std::string const& input, std::string const& output)
 }
 
 /// Loads the vectors to convert; computes them if they are the truth at pixels.
-/// @throws SetupError if a spacing or exactness is given for other files than truth.h5
+/// @throws DataError if a spacing or exactness is given for other files than truth.h5
 ExportedVectors load_vectors(VectorConversion const& conversion) {
   std::string const& input = conversion.input;
   bool const truth = is_truth_file(input);
   if (!truth && conversion.spacing_px > 0)
-    throw SetupError(std::vector<SetupProblem>{{"--spacing", "has an effect on truth.h5 of a case only; remove it"}});
+    throw DataError(ErrorCode::arguments, "--spacing", "has an effect on truth.h5 of a case only; remove it");
   bool const grid_format = conversion.output.ends_with(".nc") || conversion.output.ends_with(".vti");
   bool const exact = conversion.traced == TracedPixels::all;
   if (!truth && exact)
-    throw SetupError(std::vector<SetupProblem>{{"--exact", "has an effect on truth.h5 of a case only; remove it"}});
+    throw DataError(ErrorCode::arguments, "--exact", "has an effect on truth.h5 of a case only; remove it");
   if (!truth || (conversion.spacing_px == 0 && !grid_format && !exact))
     return load_for_export(input, conversion.conventions, conversion.image_rows);
   return compute_map_for_export(input, *open_device(conversion.device).renderer, conversion.truth_at,

@@ -99,7 +99,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       inputs = rendered_files(folder);
     } else {
       for (std::string const& name : inputs) require_input_file(name, "an image, or a case folder");
-      if (output.empty()) throw OutputError("correlate", "images require -o FILE.h5 or FILE.csv");
+      if (output.empty())
+        throw DataError(ErrorCode::arguments, "--output", "is required for images; add -o FILE.h5 or -o FILE.csv");
     }
     if (!config.empty()) inputs.push_back(config);
     std::vector<std::string> const& prepared_by = other.settings.preparation.files;

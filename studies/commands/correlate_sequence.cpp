@@ -74,7 +74,7 @@ bool is_sequence(SequenceArguments const& arguments) {
 
 int run_sequence(SequenceArguments const& arguments, GlobalOptions const& options) {
   std::string const& folder = arguments.output;
-  if (folder.empty()) throw OutputError("correlate", "a sequence requires a folder: -o DIR/");
+  if (folder.empty()) throw DataError(ErrorCode::arguments, "--output", "is required for a sequence; add -o DIR/");
   if (is_vector_file(folder))
     throw OutputError(folder, "is a file (a sequence has one file of vectors per pair); name a folder: -o DIR/");
   Pairing const pairing = parse_pairing(arguments.pairing);

@@ -130,11 +130,11 @@ ReconstructOptions DensityArguments::options() const {
   for (std::string const& text : reference_) options.reference.push_back(parse_reference(text));
   if (axisymmetric_) options.axis = parse_axis(axis_);
   if (!axisymmetric_ && !axis_.empty())
-    throw SetupError({SetupProblem{"--axis", "has no effect without --axisymmetric; add that option"}});
+    throw DataError(ErrorCode::arguments, "--axis", "has no effect without --axisymmetric; add that option");
   if (options.lambda && !density::abel_method(options.abel).regularized)
-    throw SetupError({SetupProblem{
-        "--lambda", fmt::format("has no effect with --abel {}, which is not regularised; remove it, or use another one",
-                                options.abel)}});
+    throw DataError(ErrorCode::arguments, "--lambda",
+                    fmt::format("has no effect with --abel {}, which is not regularised; remove it, or use another one",
+                                options.abel));
   return options;
 }
 

@@ -1,9 +1,11 @@
 #include "studies/commands/error_json.h"
 
 #include <charconv>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "render/base/error.h"
@@ -27,6 +29,15 @@ int remove_number(std::string_view& location) {
   return number;
 }
 
+/// Returns true if a place without a line is a file or folder: one that exists, or that the code reports as absent or
+/// not writable. Other places are options, keys and names of inputs, such as "views".
+bool is_file(ErrorCode code, std::string_view place) {
+  if (place.empty() || place.starts_with("--") || code == ErrorCode::arguments) return false;
+  std::error_code error;
+  return code == ErrorCode::missing_file || code == ErrorCode::unreadable_file || code == ErrorCode::output ||
+         code == ErrorCode::overwrites_input || std::filesystem::exists(place, error);
+}
+
 /// Describes one problem; a location "file:line:column" or "file:line" is divided into its parts.
 Json problem_json(ErrorCode code, std::string const& message, std::string_view place, std::string const& key) {
   Json json{{"code", error_code_name(code)}, {"message", message}};
@@ -34,7 +45,7 @@ Json problem_json(ErrorCode code, std::string const& message, std::string_view p
   if (place.empty() && !key.empty()) json["place"] = key;
   bool const is_option = place.starts_with("--");  // a value such as 10:20 is not a line
   int const last = is_option ? 0 : remove_number(place), before = last > 0 ? remove_number(place) : 0;
-  if (!place.empty() && !(is_option && code == ErrorCode::arguments)) json["file"] = place;
+  if (last > 0 || is_file(code, place)) json["file"] = place;
   if (last > 0) json["line"] = before > 0 ? before : last;
   if (before > 0) json["column"] = last;
   if (!key.empty()) json["key"] = key;

@@ -127,8 +127,8 @@ void draw_tomography(std::string const& path, Tomography const& result) {
 /// Writes the setups of --views.
 int plan_views(TomographyArguments const& given, GlobalOptions const& options) {
   if (given.tomography.views.size() != 1)
-    throw SetupError(
-        {SetupProblem{"--views", fmt::format("expected one setup, got {}", given.tomography.views.size())}});
+    throw DataError(ErrorCode::arguments, "--views",
+                    fmt::format("expected one setup, got {}", given.tomography.views.size()));
   std::error_code error;
   fs::create_directories(given.output, error);
   if (error) throw OutputError(given.output, "cannot be created: " + error.message());

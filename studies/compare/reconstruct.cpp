@@ -21,7 +21,8 @@ namespace {
 void check_reconstruct_options(ReconstructOptions const& options) {
   std::vector<SetupProblem> problems;
   auto const conflict = [&](char const* option, char const* reason) {
-    problems.push_back({option, std::string("conflicts with --axisymmetric (") + reason + "); remove one of them"});
+    problems.push_back({option, std::string("conflicts with --axisymmetric (") + reason + "); remove one of them", "",
+                        ErrorCode::arguments});
   };
   if (options.axis) {
     if (!options.reference.empty()) conflict("--reference", "the density beyond the largest radius is the reference");
@@ -30,7 +31,8 @@ void check_reconstruct_options(ReconstructOptions const& options) {
     problems.push_back(
         {"--reference",
          "is required (a gradient determines the density only up to a constant); give a side of the image (left, "
-         "right, top or bottom) or a box X0,Y0,X1,Y1 in mm, where the density is known"});
+         "right, top or bottom) or a box X0,Y0,X1,Y1 in mm, where the density is known",
+         "", ErrorCode::arguments});
   }
   if (options.overlap && !(*options.overlap >= 0.0 && *options.overlap < 1.0))
     problems.push_back({"--overlap", fmt::format("expected 0 to below 1, got {}", *options.overlap)});

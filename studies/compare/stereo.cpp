@@ -34,8 +34,9 @@ namespace fs = std::filesystem;
 void check_stereo_options(StereoOptions const& options) {
   std::vector<SetupProblem> problems;
   if (!options.calibrations.empty() && options.calibrations.size() != 2)
-    problems.push_back(
-        {"--calibration", fmt::format("expected two files, one for each camera, got {}", options.calibrations.size())});
+    problems.push_back({"--calibration",
+                        fmt::format("expected two files, one for each camera, got {}", options.calibrations.size()), "",
+                        ErrorCode::arguments});
   stereo::ObjectPlane const& plane = options.plane;
   if (!std::isfinite(plane.height)) problems.push_back({"--sheet-z", "expected a finite number"});
   if (!is_finite(plane.slope)) problems.push_back({"--sheet-slope", "expected two finite numbers"});
@@ -44,9 +45,11 @@ void check_stereo_options(StereoOptions const& options) {
   if (options.window_px && !(*options.window_px >= 0.0 && std::isfinite(*options.window_px)))
     problems.push_back({"--window", "expected a size in px, 0 for independent errors"});
   if (options.images.size() % 2 != 0)
-    problems.push_back({"--images", fmt::format("expected images of the first and of the second camera in turn, got an "
-                                                "odd number ({})",
-                                                options.images.size())});
+    problems.push_back({"--images",
+                        fmt::format("expected images of the first and of the second camera in turn, got an "
+                                    "odd number ({})",
+                                    options.images.size()),
+                        "", ErrorCode::arguments});
   if (!(options.residual_limit >= 0.0 && std::isfinite(options.residual_limit)))
     problems.push_back({"--residual-limit", "expected a positive number of standard uncertainties, or 0"});
   if (!problems.empty()) throw SetupError(std::move(problems));

@@ -22,26 +22,30 @@ void check_tomography_options(TomographyOptions const& options) {
   std::vector<SetupProblem> problems;
   std::size_t const count = options.views.size();
   if (count < tomography::least_views || count > most_views)
-    problems.push_back(
-        {"views", fmt::format("expected {} to {} views, got {}", tomography::least_views, most_views, count)});
+    problems.push_back({"views",
+                        fmt::format("expected {} to {} views, got {}", tomography::least_views, most_views, count), "",
+                        ErrorCode::arguments});
   if (!options.vectors.empty() && options.vectors.size() != count)
-    problems.push_back({"--vectors", fmt::format("expected one file for each of the {} views, got {}", count,
-                                                 options.vectors.size())});
+    problems.push_back(
+        {"--vectors", fmt::format("expected one file for each of the {} views, got {}", count, options.vectors.size()),
+         "", ErrorCode::arguments});
   if (!options.vectors.empty() && options.ray_truth)
-    problems.push_back({"--ray-truth", "conflicts with --vectors; remove one of them"});
+    problems.push_back({"--ray-truth", "conflicts with --vectors; remove one of them", "", ErrorCode::arguments});
   if (!options.angles.empty() && options.angles.size() != count)
     problems.push_back(
-        {"--angles", fmt::format("expected one angle for each of the {} views, got {}", count, options.angles.size())});
+        {"--angles", fmt::format("expected one angle for each of the {} views, got {}", count, options.angles.size()),
+         "", ErrorCode::arguments});
   auto const finite = [](double angle) { return std::isfinite(angle); };
   if (!finite(options.arc) || !std::all_of(options.angles.begin(), options.angles.end(), finite))
     problems.push_back({options.angles.empty() ? "--arc" : "--angles", "expected finite angles in degrees"});
   if (std::set<std::string>(options.views.begin(), options.views.end()).size() != count && options.vectors.empty())
-    problems.push_back({"views", "contain the same case twice; give each view once"});
+    problems.push_back({"views", "contain the same case twice; give each view once", "", ErrorCode::arguments});
   if (options.reference.empty())
     problems.push_back({"--reference",
                         "is required (displacement determines each projection only up to a constant); give a side of "
                         "the images (left, right, top or bottom) or a box X0,Y0,X1,Y1 in mm that the flow does not "
-                        "reach in any view"});
+                        "reach in any view",
+                        "", ErrorCode::arguments});
   if (options.spacing && !(*options.spacing > 0.0 && std::isfinite(*options.spacing)))
     problems.push_back({"--spacing", "expected a positive distance in mm"});
   if (options.bounds)

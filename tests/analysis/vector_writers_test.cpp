@@ -18,6 +18,7 @@
 #include "render/files/base64.h"
 #include "render/files/fields/field_file.h"
 #include "render/files/file_kind.h"
+#include "render/files/hdf5_file.h"
 #include "tests/support/documented_tables.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/expect_warning.h"
@@ -307,6 +308,33 @@ TEST_F(VectorWriters, Hdf5StoresTheVerdictAsCodeAndNumber) {
   field.verdict = {};
   EXPECT_EQ(Hdf5Reader(write("v.h5", field)).attribute("verdict_code"), "");
   EXPECT_EQ(read_vectors(write("v.h5", field)).field.verdict, PairVerdict{});
+}
+
+TEST_F(VectorWriters, Hdf5OfOlderVersionsHasTheVerdictAsText) {
+  std::vector<double> const one{1.0};
+  using Kind = PairVerdict::Kind;
+  for (auto const& [text, verdict] :
+       {std::pair{"does not correlate", PairVerdict{Kind::uncorrelated}},
+        {"not judged: there are fewer than 25 windows", PairVerdict{Kind::few_windows, 25}},
+        {"not judged: the pattern repeats every 8.25 px", PairVerdict{Kind::periodic, 8.25}},
+        {"not judged: the pattern repeats every px", PairVerdict{}},
+        {"not judged: for another reason", PairVerdict{}}}) {
+    Hdf5Writer file(in_folder("old.h5"), {"gladstone vectors", 1, "", 0, "cpu"});
+    for (char const* name : {"x_px", "y_px", "u_px", "v_px", "sigma_u_px", "sigma_v_px", "peak_ratio", "status"}) {
+      file.write(std::string("/") + name, one, {1}, "px", "", "vector");
+    }
+    file.attribute("/", "verdict", std::string(text));
+    file.close();
+    EXPECT_EQ(read_vectors(in_folder("old.h5")).field.verdict, verdict) << text;
+  }
+}
+
+TEST(PairVerdict, IsFoundByItsText) {
+  for (int kind = 0; kind <= static_cast<int>(PairVerdict::Kind::no_valid_vector); ++kind) {
+    PairVerdict verdict{static_cast<PairVerdict::Kind>(kind)};
+    if (verdict_text(verdict) != verdict_text({verdict.kind, 17.0})) verdict.number = 17.0;
+    EXPECT_EQ(find_verdict(verdict_text(verdict)), verdict) << verdict_text(verdict);
+  }
 }
 
 TEST_F(VectorWriters, ScatteredHdf5HasNoGrid) {

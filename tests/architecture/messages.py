@@ -20,15 +20,15 @@ TABLE_HEAD = "| code | meaning |\n|---|---|\n"
 # Calls that report to the user, and their codes if the call names none; "-" means that the code is chosen elsewhere.
 CALLS = re.compile(
     r"\b(?:(?P<data>DataError)|(?P<output>OutputError)|(?P<device>DeviceError|OutOfDeviceMemory)"
-    r"|(?P<interrupted>Interrupted)|(?P<other>refuse|fail|add_problem)|(?P<experiment>require_experiment)"
-    r"|(?P<problem>(?<=\.)problem|(?<=problems\.)push_back|(?<=problems_\.)push_back)"
+    r"|(?P<interrupted>Interrupted)|(?P<other>refuse|refuse_open|reject_nodes|fail|add_problem|Words)"
+    r"|(?P<slurm>SlurmError)|(?P<experiment>require_experiment)"
+    r"|(?P<problem>problem_?|SetupProblem|SetupError|(?<=problems\.)push_back|(?<=problems_\.)push_back)"
     r"|(?P<warning>warn|log_warning|note_once|(?<=return )Warning|(?<=warnings\.)push_back|(?<=warnings_\.)push_back"
     r"|(?<=notes\.)push_back|(?<=notes_\.)push_back))\s*[({]"
 )
 DEFAULT_CODE = {
     "data": "-", "output": "output", "device": "device", "interrupted": "interrupted", "other": "-",
-    "experiment": "wrong_format",
-    "problem": "invalid_value", "warning": "warning",
+    "slurm": "arguments", "experiment": "wrong_format", "problem": "invalid_value", "warning": "warning",
 }  # fmt: skip
 TOKEN = re.compile(
     r"//[^\n]*|/\*.*?\*/"
@@ -38,12 +38,15 @@ TOKEN = re.compile(
     r"|(?P<open>[({\[])|(?P<close>[)}\]])|(?P<end>;)",
     re.DOTALL,
 )
-# Functions that return a problem as a text, which others report.
+# Functions that return a problem as a text, which others report, or a key and its problem.
 TEXT_FUNCTIONS = re.compile(
-    r"std::string (?:\w+::)?(?:\w*(?:problem|reason|fault|refusal|warning|caveat|mistake|shortage)\w*"
-    r"|broken_\w+|wrong_\w+)\("
+    r"std::(?:string|pair<std::string, std::string>) "
+    r"(?:\w+::)?(?:\w*(?:problem|reason|fault|refusal|warning|caveat|mistake|shortage)\w*"
+    r"|broken_\w+|wrong_\w+|beyond_\w+|describe_(?:factor|offset|shift)|(?:uncorrelated|failed)_text)\("
 )
 RETURN = re.compile(r"\breturn\b")
+# Assignments of a problem to a member that others report.
+ASSIGNMENT = re.compile(r"\.problem = ")
 # Members of tables that are reported as problems.
 REASONS = re.compile(r"\.reason_\w+ = \"([^\"]+)\"")
 ESCAPES = {r"\"": '"', r"\n": " ", r"\\": "\\"}
@@ -92,6 +95,8 @@ def messages(source: str) -> list[str]:
     source = without_comments(source)
     found = {f"-: {' '.join(text.split())}" for text in returned_texts(source) if " " in text.strip()}
     found |= {f"-: {text}" for text in REASONS.findall(source)}
+    assigned = [read_until(source, begin.end(), statement=True)[1] for begin in ASSIGNMENT.finditer(source)]
+    found |= {f"-: {' '.join(text.split())}" for text in assigned if text}
     for call in CALLS.finditer(source):
         arguments, text = read_until(source, call.end())
         if " " not in text.strip():
@@ -146,6 +151,22 @@ def self_test() -> None:
     ]
     returned = 'std::string window_problem(int n) {\n  if (n > 1) return f("{} is; " "too large", n);\n  return "";\n}'
     assert messages(returned) == ["-: {} is; too large"], messages(returned)
+    for source, message in (
+        ('throw SetupError({SetupProblem{"axis", f("expected {}", 1)}});', "invalid_value: axis...expected {}"),
+        ('throw SetupError({{path, "is empty; fill it", key, ErrorCode::syntax}});', "syntax: is empty; fill it"),
+        ('  problem(place, "has an \\"x\\"; remove it");', 'invalid_value: has an "x"; remove it'),
+        ('problem_(place, "is a table");', "invalid_value: is a table"),
+        ('reject_nodes(map, [&](int i) { return i > 1; }, "is infinite", "crop it");', "-: is infinite...crop it"),
+        ('refuse_open("too few dots");', "-: too few dots"),
+        ('throw SlurmError("no such job: " + id);', "arguments: no such job:"),
+        ('std::array all{Words{Kind::masked, "masked", "is masked"}};', "-: masked...is masked"),
+        ('std::string describe_factor(Vec2d f) {\n  return f("u is {} times", f.x);\n}', "-: u is {} times"),
+        ('std::string uncorrelated_text(int n) {\n  return "differ; use others";\n}', "-: differ; use others"),
+        ('std::pair<std::string, std::string> beyond_design(Setup s) {\n  return {"lens", "is tilted"};\n}',
+         "-: lens...is tilted"),
+        ('pair.problem = a ? f("{} has no partner", b) : "";', "-: {} has no partner..."),
+    ):  # fmt: skip
+        assert messages(source) == [message], (messages(source), message)
 
 
 def main() -> int:

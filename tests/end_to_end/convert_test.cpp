@@ -111,8 +111,8 @@ TEST_F(Convert, TruthIsWrittenAtPixels) {
   }
   EXPECT_EQ(json_of({"convert", "case/truth.h5", "-o", "truth.csv", "--exact"})["columns"], 64);
   write("v.csv", "x,y,u,v\n1,2,3,4\n");
-  expect_error({"convert", "v.csv", "-o", "w.csv", "--spacing", "4"}, 2, "invalid_value at --spacing");
-  expect_error({"convert", "v.csv", "-o", "w.csv", "--exact"}, 2, "invalid_value at --exact");
+  expect_error({"convert", "v.csv", "-o", "w.csv", "--spacing", "4"}, 2, "arguments at --spacing");
+  expect_error({"convert", "v.csv", "-o", "w.csv", "--exact"}, 2, "arguments at --exact");
 }
 
 TEST_F(Convert, ForeignVectorsAreReadByTheirConventions) {

@@ -141,7 +141,8 @@ TEST_F(DataErrors, WhatIsNoImage) {
 
 TEST_F(DataErrors, VectorsNeedAPlaceAndAKnownEnding) {
   write_tiff(in("a.tif").string(), Image<std::uint16_t>(64, 64), {});
-  expect_error({"correlate", "a.tif", "a.tif"}, 2, "output at correlate");
+  expect_error({"correlate", "a.tif", "a.tif"}, 2, "arguments at --output");
+  expect_error({"correlate", "a.tif", "a.tif", "--pairing", "pairs"}, 2, "arguments at --output");
   expect_error({"correlate", "a.tif", "a.tif", "-o", "v.txt"}, 2, "output at v.txt");
 }
 

@@ -64,6 +64,33 @@ TEST_F(JsonErrors, NameTheFile) {
   EXPECT_FALSE(row[0].contains("column"));
 }
 
+TEST_F(JsonErrors, NameNoFileForAnOption) {
+  using Arguments = std::vector<std::string>;
+  succeed({"render", "setup.toml", "-o", "case", "--quiet"});
+  succeed({"correlate", "case", "--quiet"});
+  for (auto const& [wrong, code, place] :
+       {std::tuple{Arguments{"reconstruct", "case", "-o", "d.h5"}, "arguments", "--reference"},
+        {Arguments{"reconstruct", "case", "-o", "d.h5", "--reference", "middle"}, "invalid_value", "--reference"},
+        {Arguments{"correlate", "case/flow.tif"}, "arguments", "--output"},
+        {Arguments{"tomography", "case", "case", "--reference", "left", "-o", "v.h5"}, "arguments", "views"},
+        {Arguments{"render", "setup.toml", "-o", "b", "--set", "x=1"}, "unknown_key", "--set x=1"}}) {
+    nlohmann::json const errors = run_with_errors(wrong, 2);
+    ASSERT_FALSE(errors.empty()) << wrong.front();
+    EXPECT_EQ(errors[0]["code"], code) << errors;
+    EXPECT_EQ(errors[0]["place"], place) << errors;
+    EXPECT_FALSE(errors[0].contains("file") || errors[0].contains("line")) << errors;
+  }
+}
+
+TEST_F(JsonErrors, NameTheFileWhateverTheCode) {
+  succeed({"render", "setup.toml", "-o", "case", "--quiet"});
+  write("v.csv", "x,y,u,v\n10,10,nan,nan\n");
+  nlohmann::json const errors = run_with_errors({"compare", "case", "--vectors", "v.csv"}, 1);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0]["code"], "no_valid_vector");
+  EXPECT_THAT(errors[0].value("file", ""), testing::EndsWith("v.csv"));
+}
+
 TEST_F(JsonErrors, CoverTheCommandLine) {
   using Arguments = std::vector<std::string>;
   for (auto const& [wrong, place] : {std::pair{Arguments{"rendre"}, "rendre"},

@@ -9,14 +9,16 @@ namespace fs = std::filesystem;
 class OverwrittenInputs : public ProgramFixture {
  protected:
   /// Expects the command to end with exit code 2 and the name of the file, which is unchanged.
-  void expect_kept(std::string const& file, std::vector<std::string> arguments) const {
+  /// @param code  of the error: "overwrites_input", or "output" for other files that are not to be replaced
+  void expect_kept(std::string const& file, std::vector<std::string> arguments,
+                   std::string const& code = "output") const {
     std::string const before = read(file);
     ASSERT_NE(before, "") << file;
     arguments.insert(arguments.end(), {"--quiet", "--json"});
     Outcome const outcome = gladstone(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err;
     auto const error = nlohmann::json::parse(outcome.out)["errors"][0];
-    EXPECT_THAT(error["code"], testing::AnyOf("output", "overwrites_input")) << outcome.err;
+    EXPECT_EQ(error["code"], code) << testing::PrintToString(arguments) << outcome.err;
     EXPECT_THAT(error["place"].get<std::string>(), testing::HasSubstr(file)) << "the file, or a figure inside it";
     EXPECT_TRUE(read(file) == before) << file << " is destroyed by " << testing::PrintToString(arguments);
   }
@@ -47,7 +49,7 @@ TEST_F(OverwrittenInputs, OfACase) {
     expect_kept("case/" + name, {"report", "case", "--figures", "case/" + name});
     expect_kept("case/" + name, {"info", "mie", "--x", "5", "--m", "1.5", "--figure", "case/" + name});
   }
-  expect_kept("case/truth.h5", {"correlate", "case", "-o", "case/truth.h5"});
+  expect_kept("case/truth.h5", {"correlate", "case", "-o", "case/truth.h5"}, "overwrites_input");
   expect_kept("case/truth.h5", {"correlate", "case/reference.tif", "case/flow.tif", "-o", "case/truth.h5"});
   // files of the same kind are still replaced
   succeed({"report", "case", "-o", "case/report.html"});
@@ -65,11 +67,17 @@ TEST_F(OverwrittenInputs, OfAStudy) {
        {"manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "base.toml", "study.toml", "study.h5", "study.csv"}) {
     expect_kept("run/" + name, {"report", "run", "-o", "run/" + name});
   }
-  for (std::string const name :
-       {"manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "cases/0/reference.tif", "cases/0/vectors.h5",
-        "cases/0/setup.toml", "base.toml", "study.toml", "study.h5", "study.csv"}) {
-    expect_kept("run/" + name, {"sweep", "collect", "run", "--no-figures", "--dataset", "run/" + name});
-  }
+  std::vector<std::string> const collected{
+      "manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "cases/0/reference.tif",
+      "study.toml",     "study.h5",     "study.csv"};
+  auto const expect_kept_by_collect = [&](std::string const& folder, std::string const& name) {
+    bool const is_input = std::count(collected.begin(), collected.end(), name) > 0;
+    expect_kept(folder + name, {"sweep", "collect", "run", "--no-figures", "--dataset", folder + name},
+                is_input ? "overwrites_input" : "output");
+  };
+  for (std::string const& name : collected) expect_kept_by_collect("run/", name);
+  for (char const* const name : {"cases/0/vectors.h5", "cases/0/setup.toml", "base.toml"})
+    expect_kept_by_collect("run/", name);
   write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
   render("case");
   // also files without a signature, and under other names
@@ -82,7 +90,7 @@ TEST_F(OverwrittenInputs, OfAStudy) {
       expect_kept(folder + name, {"report", "run", "-o", folder + name});
       expect_kept(folder + name, {"report", "run", "--format", "md", "-o", folder + name});
       expect_kept(folder + name, {"trace", "setup.toml", "--rays", "rays.csv", "-o", folder + name});
-      expect_kept(folder + name, {"sweep", "collect", "run", "--no-figures", "--dataset", folder + name});
+      expect_kept_by_collect(folder, name);
     }
   }
   expect_kept("run/study.csv", {"correlate", "case", "-o", "run/study.csv"});
@@ -107,7 +115,7 @@ TEST_F(OverwrittenInputs, OfALensADesignAndAMeasurement) {
   write("lens.toml",
         "schema = 1\nf_number = 10.0\nfield_deg = [0.0]\n[[surface]]\nradius_mm = 51.5\nthickness_mm = 3.6\n"
         "index = 1.5168\nstop = true\n[[surface]]\nsemi_diameter_mm = 12.7\n");
-  expect_kept("lens.toml", {"info", "lens", "lens.toml", "--figure", "lens.toml"});
+  expect_kept("lens.toml", {"info", "lens", "lens.toml", "--figure", "lens.toml"}, "overwrites_input");
   std::string const question = with(small_setup, "[correlate]", R"([requirements]
 objective = "gradient_min"
 resolution_mm = 20.0
@@ -119,7 +127,7 @@ z_d_mm = [100.0, 1200.0]
 keys = ["geometry.z_a_mm", "geometry.z_d_mm"]
 [correlate])");
   write("design.toml", question);
-  expect_kept("design.toml", {"design", "design.toml", "--verify", "0", "--apply", "design.toml"});
+  expect_kept("design.toml", {"design", "design.toml", "--verify", "0", "--apply", "design.toml"}, "overwrites_input");
   render("case");
   expect_kept("case/setup.toml", {"design", "design.toml", "--verify", "0", "--apply", "case/setup.toml"});
   succeed({"design", "design.toml", "--verify", "0", "--apply", "best.toml"});

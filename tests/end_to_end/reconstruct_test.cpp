@@ -259,13 +259,13 @@ TEST_F(ReconstructedDensity, RefusesWhatDeterminesNoDensity) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     expect_error(arguments, exit_code, error, values);
   };
-  refused({}, 2, "invalid_value at --reference", {"left"});
+  refused({}, 2, "arguments at --reference", {"left"});
   refused({"--reference", "middle"}, 2, "invalid_value at --reference", {"middle"});
   refused({"--reference", "left:0"}, 2, "invalid_value at --reference", {"left:0"});
   refused({"--reference", "1,2,3"}, 2, "invalid_value at --reference", {"1,2,3"});
   refused({"--reference", "90,90,99,99"}, 2, "invalid_value at reference", {"90 to 99 mm"});
-  refused({"--reference", "left", "--axisymmetric"}, 2, "invalid_value at --reference", {"--axisymmetric"});
-  refused({"--reference", "left", "--axis", "x=0"}, 2, "invalid_value at --axis", {"--axisymmetric"});
+  refused({"--reference", "left", "--axisymmetric"}, 2, "arguments at --reference", {"--axisymmetric"});
+  refused({"--reference", "left", "--axis", "x=0"}, 2, "arguments at --axis", {"--axisymmetric"});
   refused({"--axisymmetric", "--axis", "z=0"}, 2, "invalid_value at --axis", {"z=0"});
   refused({"--axisymmetric", "--axis", "x=70"}, 2, "invalid_value at axis", {"70 mm"});
   refused({"--axisymmetric", "--axis", "x=3"}, 2, "inconsistent at axis", {"3 mm"});

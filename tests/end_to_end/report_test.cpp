@@ -336,7 +336,7 @@ TEST_F(Reports, RequireAReferenceForADensity) {
   EXPECT_THAT(read("case/report.html"), HasSubstr("No density was reconstructed"));
   EXPECT_FALSE(data_of("case/report.html").contains("density"));
   expect_error({"report", "case", "--reference", "900,900,999,999"}, 2, "invalid_value at reference");
-  expect_error({"report", "case", "--deconvolve", "3"}, 2, "invalid_value at --reference");
+  expect_error({"report", "case", "--deconvolve", "3"}, 2, "arguments at --reference");
   succeed({"report", "case", "--reference", "left", "--format", "md", "-o", "text/m.md", "--quiet"});
   EXPECT_THAT(read("text/m.md"), HasSubstr("density_profile.png"));
   EXPECT_TRUE(std::filesystem::exists(in("text/m_figures/density.png")));

@@ -177,7 +177,7 @@ TEST_F(Stereo, FindsAMisalignedSheet) {
   EXPECT_LT(sheet["z_sigma_mm"].get<double>(), 0.003) << sheet;
   EXPECT_LT(sheet["disparity_sigma_px"].get<double>(), 0.1) << sheet;
   expect_error({"stereo", "case/left", "case/right", "-o", "x.h5", "--align", "--images", "case/left/flow.tif"}, 2,
-               "invalid_value at --images");
+               "arguments at --images");
 }
 
 // The sheet is where it is assumed: a correction of less than three standard uncertainties is not used.
@@ -289,7 +289,7 @@ TEST_F(Stereo, ThreeComponentsAreConvertedAndScored) {
   std::vector<double> const w = Hdf5Reader(in("uvw.nc").string()).read("/w");
   for (std::size_t i = 0; i < w.size(); ++i) EXPECT_TRUE(w[i] == displacement[3 * i + 2] || std::isnan(w[i]));
   expect_error({"convert", "uvw.h5", "-o", "other.h5"}, 2, "output at other.h5");
-  expect_error({"compare", "uvw.h5", "--vectors", "v.csv"}, 2, "invalid_value at --vectors");
+  expect_error({"compare", "uvw.h5", "--vectors", "v.csv"}, 2, "arguments at --vectors");
 }
 
 TEST_F(Stereo, RefusesWhatItCannotCombine) {

@@ -115,15 +115,15 @@ TEST_F(Tomography, RefusesWhatDeterminesNoVolume) {
                            std::vector<std::string> const& values = {}) {
     expect_error(words(more), 2, error, values);
   };
-  refused({}, "invalid_value at --reference");
-  refused({"--reference", "left", "--angles", "0,60"}, "invalid_value at --angles", {"3 views"});
+  refused({}, "arguments at --reference");
+  refused({"--reference", "left", "--angles", "0,60"}, "arguments at --angles", {"3 views"});
   refused({"--reference", "left", "--bounds", "100,100,100,110,110,110"}, "undetermined at tomography",
           {"0 views", "--bounds"});
   refused({"--reference", "left", "--spacing", "50"}, "invalid_value at --spacing", {"50 mm"});
   refused({"--reference", "90,90,99,99"}, "invalid_value at reference", {"90 to 99 mm"});
-  expect_error({"tomography", "0", "1", "--reference", "left", "-o", "volume.h5"}, 2, "invalid_value at views",
+  expect_error({"tomography", "0", "1", "--reference", "left", "-o", "volume.h5"}, 2, "arguments at views",
                {"3 to 16", " 2"});
-  expect_error({"tomography", "0", "1", "1", "--reference", "left", "-o", "volume.h5"}, 2, "invalid_value at views");
+  expect_error({"tomography", "0", "1", "1", "--reference", "left", "-o", "volume.h5"}, 2, "arguments at views");
   write_vectors("0.csv", "0", [](double x) { return x > 20; });
   expect_error(
       {"tomography", "0", "1", "2", "--vectors", "0.csv", "0.csv", "0.csv", "--reference", "left", "-o", "volume.h5"},

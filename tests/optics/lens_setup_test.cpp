@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "tests/support/expect_error.h"
+#include "tests/support/folder_fixture.h"
 
 namespace gladstone {
 namespace {
@@ -57,19 +59,45 @@ TEST(LensSetup, ImpossibleLensesAreRefused) {
               ThrowsSetupError(ErrorCode::invalid_value, "lens.toml:3:1"));
 }
 
+/// Reads a setup, "setup.toml", with a lens prescription in its third line, and builds the lens.
+void build_lens_of(std::string const& file) {
+  SetupDocument document =
+      SetupDocument::from_text("[lens]\nmodel = \"prescription\"\nfile = \"" + file + "\"\n", "setup.toml");
+  SetupTable const table = document.root().table("lens");
+  LensSetup setup = read_lens_setup(table);
+  Warnings warnings;
+  build_prescription(setup, table, GlassCatalogue::shipped(), spectral_line::d, std::nullopt, warnings);
+  document.finish();
+}
+
 // A lens with water ahead of it would be focused incorrectly, since scenes are in gas, and is refused.
 TEST(LensSetup, ALensInWaterIsRefused) {
-  std::string const file = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/lenses/object_in_water.zmx";
-  auto const build = [&] {
-    SetupDocument document =
-        SetupDocument::from_text("[lens]\nmodel = \"prescription\"\nfile = \"" + file + "\"\n", "water.toml");
-    SetupTable const table = document.root().table("lens");
-    LensSetup setup = read_lens_setup(table);
-    Warnings warnings;
-    build_prescription(setup, table, GlassCatalogue::shipped(), spectral_line::d, std::nullopt, warnings);
-    document.finish();
+  auto const build = [] {
+    build_lens_of(std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/lenses/object_in_water.zmx");
   };
-  EXPECT_EQ(error_of(build), "invalid_value at water.toml:3:1");
+  EXPECT_EQ(error_of(build), "invalid_value at setup.toml:3:1");
+}
+
+class LensFile : public FolderFixture {};
+
+TEST_F(LensFile, HasOneRecordForEachOfItsProblems) {
+  write("bad.toml",
+        "schema = 1\nf_number = \"wide\"\nfield_deg = [0.0]\n[[surface]]\nradius_mm = 51.5\nthickness_mm = 3.6\n"
+        "index = 1.5168\nstop = true\nsemi_diametre_mm = 12.7\n[[surface]]\nsemi_diameter_mm = 12.7\n");
+  try {
+    build_lens_of(in_folder("bad.toml"));
+    FAIL() << "the lens is accepted";
+  } catch (SetupError const& error) {
+    ASSERT_EQ(error.problems().size(), 2u) << error.what();
+    std::map<ErrorCode, std::string> lines;
+    for (SetupProblem const& problem : error.problems()) {
+      EXPECT_EQ(problem.where, "setup.toml:3:1");
+      EXPECT_EQ(problem.key, "lens.file");
+      lines[problem.code] = problem.message;
+    }
+    EXPECT_THAT(lines[ErrorCode::wrong_type], HasSubstr("bad.toml:2:1: "));
+    EXPECT_THAT(lines[ErrorCode::unknown_key], HasSubstr("bad.toml:9:1: "));
+  }
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ cv::Mat eight_bits(GreyImage const& frame, GreyRange const& range) {
 /// Returns the displacement from the first frame to the second one, at the pixel midway between both positions.
 DenseFlow one_way(cv::Mat const& from, cv::Mat const& to) {
   cv::Mat found;
-  call_opencv(ErrorCode::unsupported,
+  call_opencv(ErrorCode::unsupported, "image pair",
               fmt::format("compute the optical flow of frames of {} x {} px", from.cols, from.rows), [&] {
                 OneThread const one_thread;
                 cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM)->calc(from, to, found);

@@ -82,6 +82,13 @@ void restore_marked(OwnColumns& columns, TextTable const& table, std::vector<dou
   }
 }
 
+/// Reads the verdict on the pair; files of older versions have its text but no code.
+PairVerdict read_verdict(Hdf5Reader const& file) {
+  std::string const code = file.attribute("verdict_code");
+  if (code.empty()) return find_verdict(file.attribute("verdict"));
+  return {find_verdict_kind(code), std::strtod(file.attribute("verdict_number").c_str(), nullptr)};
+}
+
 }  // namespace
 
 VectorFile read_gladstone_hdf5(std::string const& path) {
@@ -92,8 +99,7 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
     if (is_own_column(name)) columns.values[name] = file.read('/' + name);
   }
   VectorFile vectors = read_own_columns(columns);
-  vectors.field.verdict = {find_verdict_kind(file.attribute("verdict_code")),
-                           std::strtod(file.attribute("verdict_number").c_str(), nullptr)};
+  vectors.field.verdict = read_verdict(file);
   vectors.field.uncertainty_method = file.attribute("uncertainty_method");
   vectors.field.uncertainty_key = file.attribute("uncertainty_key");
   return vectors;
