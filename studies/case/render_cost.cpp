@@ -66,6 +66,7 @@ RenderCost estimate_render_cost(Setup const& setup) {
   cost.memory = memory_requirements(setup);
   Scene const scene = cost_scene(planes ? plane_setup(setup, setup.planes.front()) : setup);
   RenderPlan plan;
+  plan.given_rays = setup.render.rays_per_dot;
   plan.step = setup.medium.step_mm ? *setup.medium.step_mm * unit::millimetre : scene.medium.coarsest_step;
   plan.method = cost.method = resolve_render_method(scene);
   double const images = planes ? static_cast<double>(setup.planes.size()) : 1;
@@ -76,9 +77,9 @@ RenderCost estimate_render_cost(Setup const& setup) {
     std::vector<MemoryRequirement> const table = focused_dots_memory(setup);
     cost.memory.insert(cost.memory.end(), table.begin(), table.end());
   }
-  cost.rays_are_largest = !setup.render.rays_per_dot && !by_table && !chief;
+  cost.rays_are_largest = !plan.given_rays && !by_table && !chief;
   std::uint64_t const automatic = chief ? 1 : by_table ? initial_table_rays : max_rays_per_source(scene, plan);
-  plan.rays = setup.render.rays_per_dot.value_or(automatic);
+  plan.rays = plan.given_rays.value_or(automatic);
   cost.rays_per_source = cost.expected_rays = static_cast<double>(plan.rays);
   if (kind.expected_rays) {
     double const media = scene.second_medium ? 2 : 1;
