@@ -16,7 +16,7 @@ struct FramePair {
 /// Converts grey levels, which are whole numbers from 0 to 65535, to integers.
 Image<std::uint16_t> integer_levels(Image<double> const& levels);
 
-/// Grey levels of a pair of frames in host or device memory, as real numbers: the input of a correlator.
+/// Grey levels of a pair of frames in host or device memory: the input of a correlator.
 class StoredFrames {
  public:
   virtual ~StoredFrames() = default;
