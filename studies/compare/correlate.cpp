@@ -157,8 +157,8 @@ Measurement correlate_checked(StoredFrames const& frames, CorrelationSettings co
 
 }  // namespace
 
-Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name, HostFrames const& frames,
-                             CorrelationSettings const& settings, Backend const& device) {
+Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name,
+                             StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device) {
   Image<double> const &reference = frames.reference(), &flow = frames.flow();
   NamedFrame const a{reference_name, reference.columns(), reference.rows()}, b{flow_name, flow.columns(), flow.rows()};
   check_sizes(a, b, settings);

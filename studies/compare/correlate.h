@@ -22,8 +22,8 @@ struct Measurement {
 
 /// Correlates two images, and estimates the uncertainty of the vectors by the method of choose_uncertainty().
 /// @throws DataError if they differ in size or are smaller than an interrogation window
-Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name, HostFrames const& frames,
-                             CorrelationSettings const& settings, Backend const& device);
+Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name,
+                             StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device);
 /// Like correlate_frames(), for images that another library stores in the memory of the first GPU; they are not copied
 /// to the host unless the settings require the CPU.
 Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples const& reference,
