@@ -34,6 +34,7 @@ class StoredFrames {
 class HostFrames final : public StoredFrames {
  public:
   HostFrames(Image<double> reference, Image<double> flow) : levels_{std::move(reference), std::move(flow)} {}
+  explicit HostFrames(FramePair<double> levels) : levels_(std::move(levels)) {}
   Image<double> const& reference() const override { return levels_.reference; }
   Image<double> const& flow() const override { return levels_.flow; }
 

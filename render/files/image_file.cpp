@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -15,7 +16,6 @@
 #include <vector>
 
 #include "render/base/error.h"
-#include "render/base/frame_pair.h"
 #include "render/base/interrupt.h"
 #include "render/base/version.h"
 #include "render/files/image_codecs.h"
@@ -191,7 +191,7 @@ Image<std::uint16_t> integer_levels(StoredLevels levels) {
   return integer_levels(std::get<Image<double>>(levels));
 }
 
-std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetadata* metadata) {
+FramePair<double> read_frame_pair(std::string const& path, ImageMetadata* metadata) {
   return named(path, [&] {
     Picture picture(path);
     if (picture.pages() != 2) {
@@ -202,7 +202,7 @@ std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetad
               picture.pages(), picture.pages() == 1 ? "page" : "pages"));
     }
     Image<double> reference = picture.read(0, metadata);
-    return std::array{std::move(reference), picture.read(1, nullptr)};
+    return FramePair<double>{std::move(reference), picture.read(1, nullptr)};
   });
 }
 

@@ -216,13 +216,13 @@ void add_preparation(CorrelationSettings const& settings, SourceFiles& sources) 
     sources.add(fmt::format("preparation_{}", ++number), file, SourceFiles::Holds::pixels);
 }
 
-std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources) {
+FramePair<double> read_frames(std::string const& pair, SourceFiles& sources) {
   ImageMetadata metadata;
   sources.add("", pair, SourceFiles::Holds::bytes);
-  std::array<Image<double>, 2> frames = read_frame_pair(pair, &metadata);
+  FramePair<double> frames = read_frame_pair(pair, &metadata);
   warn_of_reading(pair, metadata);
-  sources.add_known("reference", pixel_sha256(frames[0], metadata.sample_bits));
-  sources.add_known("flow", pixel_sha256(frames[1], metadata.sample_bits));
+  sources.add_known("reference", pixel_sha256(frames.reference, metadata.sample_bits));
+  sources.add_known("flow", pixel_sha256(frames.flow, metadata.sample_bits));
   return frames;
 }
 
