@@ -8,7 +8,7 @@
 #include "render/base/nearest_name.h"
 #include "render/files/output_destination.h"
 #include "render/scene/experiment.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/rendered_sequence_folder.h"
 

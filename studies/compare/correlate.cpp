@@ -20,7 +20,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/case.h"
 #include "studies/case/peak_locking.h"
 #include "studies/case/truth_file.h"

@@ -16,7 +16,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/files/stop_point.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/warning_log.h"
 #include "studies/compare/correlate.h"

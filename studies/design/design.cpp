@@ -13,7 +13,7 @@
 #include "render/files/output_file.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/experiment.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/case_files.h"
 #include "studies/design/bos_sheet.h"
 #include "studies/design/piv_sheet.h"
