@@ -40,11 +40,7 @@ Eigen::MatrixXd compute_residuals(std::vector<GridDot> const& dots, Eigen::Matri
   return values - terms * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(values);
 }
 
-double median_of(Eigen::VectorXd values) {
-  double* const middle = values.data() + values.size() / 2;
-  std::nth_element(values.data(), middle, values.data() + values.size());
-  return *middle;
-}
+double median_of(Eigen::VectorXd const& values) { return upper_median({values.data(), values.data() + values.size()}); }
 
 int choose_order(std::size_t dots) { return dots >= least_for_cubic ? 3 : 2; }
 

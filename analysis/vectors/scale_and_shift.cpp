@@ -10,6 +10,7 @@
 
 #include "analysis/vectors/convention_fit.h"
 #include "analysis/vectors/position_mistakes.h"
+#include "render/base/median.h"
 #include "render/base/not_a_number.h"
 
 namespace gladstone::inline vectors {
@@ -94,9 +95,7 @@ ProbableMistake find_offset(Search const& search) {
       if (std::isfinite(t)) differences.push_back(ours.displacement_px[i].*component - t);
     }
     if (differences.empty()) return {};
-    auto const middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-    std::nth_element(differences.begin(), middle, differences.end());
-    offset.*component = *middle;
+    offset.*component = upper_median(std::move(differences));
   }
   constexpr double least = 0.2;  // minimum offset that is reported; larger than the bias by peak locking [px]
   if (!(std::max(std::abs(offset.x), std::abs(offset.y)) > least)) return {};

@@ -108,7 +108,7 @@ __device__ Place next_place(Place const& from, Place const& step, int elements) 
   return next.element < elements ? next : Place{next.item + 1, next.element - elements};
 }
 
-/// Computes the integrals of the loaded images up to pixel edges: GaussianSpot::edge_integral() by the same operations.
+/// Computes the integrals of the loaded images up to pixel edges, by the same operations as GaussianSpot::shares().
 template <int most_edges>
 __device__ void integrate_edges(Chunk<most_edges>& held, int count, int edges) {
   Place const step = place_of(threads, edges);

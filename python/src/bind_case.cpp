@@ -22,7 +22,7 @@ std::vector<AnyCase> render_cameras(SetupText const& setup, std::string const& d
   std::vector<AnyCase> rendered;
   std::shared_ptr<PairCase> first;
   for (CameraCase& one : cameras) {
-    if (!one.loaded.setup.planes.empty()) {
+    if (!one.loaded.setup.experiment().correlated) {
       rendered.emplace_back(std::make_shared<PlanesCase>(std::move(one), device));
       continue;
     }

@@ -9,7 +9,7 @@
 #include "python/src/call.h"
 #include "python/src/setup_text.h"
 #include "render/base/units.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/backend.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"

@@ -8,7 +8,7 @@
 #include "python/src/setup_text.h"
 #include "render/base/parallel.h"
 #include "render/files/text_file.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/backend.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"

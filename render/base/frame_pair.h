@@ -16,7 +16,7 @@ struct FramePair {
 /// Converts grey levels, which are whole numbers from 0 to 65535, to integers.
 Image<std::uint16_t> integer_levels(Image<double> const& levels);
 
-/// Grey levels of a pair of frames in host or device memory, as real numbers: the input of a correlator.
+/// Grey levels of a pair of frames in host or device memory: the input of a correlator.
 class StoredFrames {
  public:
   virtual ~StoredFrames() = default;
@@ -34,6 +34,7 @@ class StoredFrames {
 class HostFrames final : public StoredFrames {
  public:
   HostFrames(Image<double> reference, Image<double> flow) : levels_{std::move(reference), std::move(flow)} {}
+  explicit HostFrames(FramePair<double> levels) : levels_(std::move(levels)) {}
   Image<double> const& reference() const override { return levels_.reference; }
   Image<double> const& flow() const override { return levels_.flow; }
 

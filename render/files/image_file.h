@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <variant>
 
+#include "render/base/frame_pair.h"
 #include "render/base/image.h"
 
 namespace gladstone::inline files {
@@ -42,7 +42,7 @@ Image<std::uint16_t> integer_levels(StoredLevels levels);
 /// Reads a file of two pages, as written by PIV cameras: frame A and frame B. Pages smaller than the first in both
 /// directions are previews, which are ignored.
 /// @throws DataError if the number of pages is not two
-std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetadata* metadata = nullptr);
+FramePair<double> read_frame_pair(std::string const& path, ImageMetadata* metadata = nullptr);
 
 /// Counts the pixels that are NaN or infinite, which floating-point images can contain.
 std::size_t count_not_finite(Image<double> const& image);

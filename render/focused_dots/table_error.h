@@ -21,7 +21,7 @@ inline constexpr std::uint64_t refined_table_rays = 512;  ///< rays per dot that
 
 /// Completes a plan that has a step with the number of rays per dot that correct the table, and the fineness of table
 /// and rules.
-/// A number given in the setup is used unchanged. Otherwise it is 32 rays. If the errors exceed 1e-3 px rms in the
+/// If RenderPlan::given_rays is set, it is used unchanged. Otherwise it is 32 rays. If the errors exceed 1e-3 px rms in the
 /// truth or half a grey level in images, table and rules are refined by a factor of two, with 512 rays. Dots with large
 /// scatter use up to 256 rays (DotModel). The plan contains the remaining error of the table.
 RenderPlan plan_rays_by_table(FocusedDots const& dots);

@@ -89,9 +89,7 @@ template <class Medium>
 GLADSTONE_HD bool meets_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                              Ray<double> ray, Vec2d& place) {
   CameraView<double> const& camera = view.camera;
-  for (int i = 0; i < camera.before_medium; ++i) {
-    if (!trace_ignoring_vignetting(camera.elements[i], ray)) return false;
-  }
+  if (!carry_ignoring_vignetting(camera, 0, camera.before_medium, ray)) return false;
   if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
     Ray<double> const start[1] = {ray};
     MediumPassage<double> way[1];
@@ -99,9 +97,7 @@ GLADSTONE_HD bool meets_stop(StopView const& view, Medium const& medium, Tracing
     if (way[0].status != RayStatus::alive) return false;
     ray = outgoing_ray(ray, way[0]);
   }
-  for (int i = camera.before_medium; i < view.stop; ++i) {
-    if (!trace_ignoring_vignetting(camera.elements[i], ray)) return false;
-  }
+  if (!carry_ignoring_vignetting(camera, camera.before_medium, view.stop, ray)) return false;
   return camera.elements[view.stop].visit([&](auto const& held) { return held.meet(ray, place); });
 }
 

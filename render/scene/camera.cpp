@@ -49,12 +49,10 @@ Ray<double> Camera::towards(Vec3d point, Vec2d aim) const {
 
 std::optional<Vec2d> Camera::in_stop(Vec3d point, Vec2d aim) const {
   Ray<double> ray = towards(point, aim);
-  auto const last = static_cast<std::size_t>(stop);
-  for (std::size_t i = 0; i < last; ++i) {
-    if (!trace_ignoring_vignetting(elements[i], ray)) return std::nullopt;
-  }
+  if (!carry_ignoring_vignetting(view(), 0, stop, ray)) return std::nullopt;
   Vec2d place;
-  bool const met = elements[last].visit([&](auto const& held) { return held.meet(ray, place); });
+  bool const met =
+      elements[static_cast<std::size_t>(stop)].visit([&](auto const& held) { return held.meet(ray, place); });
   return met ? std::optional(place) : std::nullopt;
 }
 

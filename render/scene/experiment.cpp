@@ -1,13 +1,19 @@
 #include "render/scene/experiment.h"
 
 #include "render/scene/setup.h"
+#include "render/setup/setup_node.h"
 
 namespace gladstone::inline scene {
 
 Experiment const& find_experiment(std::string const& name) {
   for (Experiment const* one : all_experiments)
     if (name == one->name) return *one;
-  return bos_experiment;
+  return *all_experiments.front();
+}
+
+Experiment const& find_experiment(SetupDocument const& setup) {
+  SetupNode const* const name = setup.find({"experiment"});
+  return find_experiment(name ? name->text : "");
 }
 
 Experiment const& Setup::experiment() const {

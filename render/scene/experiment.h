@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Experiment {
   bool measures_density;        ///< true: the medium causes the displacement between the frames (Eq. 9)
   bool correlated;              ///< true: two frames, which are correlated; false: one frame for each plane
   bool medium_in_first_frame;   ///< true: both frames see the medium; false: the first frame is without medium
+  bool consecutive_frames;      ///< pair k of a sequence: true: frames k and k + 1, k from 0; false: 0 and k, k from 1
   char const* reason_for_rays;  ///< reason against the fast renderer; empty: it may apply
 
   /// Reads the distance from the medium to the dots; refuses it for experiments without dots behind a medium.
@@ -28,6 +30,9 @@ struct Experiment {
   void (*read)(Setup& setup, SetupTable root);
   /// Checks a setup whose lens forms an image across tables, see cross_check().
   void (*cross_check)(Setup const& setup, SetupTable root, Warnings& warnings);
+
+  /// Returns the number of the first pair of a sequence.
+  std::size_t first_pair() const { return consecutive_frames ? 0 : 1; }
 };
 
 extern Experiment const bos_experiment, piv_experiment, calibration_experiment;
@@ -38,5 +43,22 @@ inline constexpr std::array all_experiments{&bos_experiment, &piv_experiment, &c
 
 /// Returns the experiment with a name; the default if there is none.
 Experiment const& find_experiment(std::string const& name);
+
+/// Returns the experiment that the key `experiment` of a setup names; the default if there is none.
+Experiment const& find_experiment(SetupDocument const& setup);
+
+/// Returns the kind that belongs to an experiment, among kinds or pointers to kinds; null if there is none.
+template <class Kind, std::size_t count>
+Kind const* find_kind(std::array<Kind, count> const& kinds, Experiment const& experiment) {
+  for (Kind const& kind : kinds)
+    if (&kind.experiment == &experiment) return &kind;
+  return nullptr;
+}
+template <class Kind, std::size_t count>
+Kind const* find_kind(std::array<Kind const*, count> const& kinds, Experiment const& experiment) {
+  for (Kind const* kind : kinds)
+    if (&kind->experiment == &experiment) return kind;
+  return nullptr;
+}
 
 }  // namespace gladstone::inline scene

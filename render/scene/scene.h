@@ -95,8 +95,8 @@ void check_deflection_limit(double shift, double z_b);
 /// @throws DataError if the dots cannot be placed, or if the target's file is invalid
 DotPattern build_target(Setup const& setup);
 
-/// Builds the scene: camera, dots or particles, and medium. Step, margin and ray numbers must be set afterwards
-/// (ray_budget.h).
+/// Builds the scene: camera, dots or particles, and medium. plan_rendering() chooses the integration step and the
+/// number of rays for it.
 /// @param medium  the medium of this setup, if it is already built
 Scene build_scene(Setup const& setup, BuiltMedium const* medium = nullptr);
 

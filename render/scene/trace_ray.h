@@ -49,6 +49,16 @@ GLADSTONE_HD RayStatus carry(CameraView<T> const& camera, int first, int last, R
   return status;
 }
 
+/// Traces one ray through elements [first, last), ignoring vignetting.
+/// @return false if the ray is lost
+GLADSTONE_HD inline bool carry_ignoring_vignetting(CameraView<double> const& camera, int first, int last,
+                                                   Ray<double>& ray) {
+  for (int i = first; i < last; ++i) {
+    if (!trace_ignoring_vignetting(camera.elements[i], ray)) return false;
+  }
+  return true;
+}
+
 /// Returns the straight ray behind the medium; the incoming ray itself if it was not deflected.
 template <class T>
 GLADSTONE_HD Ray<T> outgoing_ray(Ray<T> const& start, MediumPassage<T> const& way) {

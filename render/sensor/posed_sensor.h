@@ -21,8 +21,7 @@ struct BrownDistortion {
   }
 };
 
-/// Sensor plane at any pose. Light travels along its +z axis. Together with Sensor, the only place where metres become
-/// pixels.
+/// Sensor plane at any pose. Light travels along its +z axis. The only place where metres become pixels.
 template <class T>
 struct PosedSensor {
   Pose<T> pose;  ///< pose; its origin is at the centre of pixel ((columns-1)/2, (rows-1)/2)

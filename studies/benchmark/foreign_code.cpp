@@ -6,10 +6,12 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "analysis/vectors/convention_report.h"
 #include "analysis/vectors/vector_screening.h"
 #include "render/base/error.h"
+#include "render/base/median.h"
 #include "studies/compare/compared_vectors.h"
 
 namespace gladstone::inline benchmarks {
@@ -48,8 +50,7 @@ Nodes find_nodes(DisplacementField const& field, double Vec2d::*component) {
     levels.push_back(at);
   }
   if (steps.empty()) return {levels.size(), 0.0, 0.0, 0.0};
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  return {levels.size(), steps[steps.size() / 2], levels.front(), levels.back()};
+  return {levels.size(), upper_median(std::move(steps)), levels.front(), levels.back()};
 }
 
 }  // namespace

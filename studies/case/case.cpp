@@ -12,7 +12,7 @@
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
 #include "render/scene/read_setup.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/case_warnings.h"

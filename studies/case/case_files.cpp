@@ -7,8 +7,8 @@
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
 #include "render/files/output_destination.h"
-#include "render/scene/setup_document.h"
-#include "render/setup/setup_node.h"
+#include "render/scene/experiment.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/rendered_sequence_folder.h"
 
@@ -34,8 +34,7 @@ void require_pair(std::string const& folder) {
                     fmt::format("contains one case for each of its cameras, {}; name one of them: {}",
                                 quoted_list(names), (fs::path(folder) / names.front()).string()));
   }
-  SetupNode const* const experiment = setup.find({"experiment"});
-  if (experiment && experiment->text == "calibration") {
+  if (!find_experiment(setup).correlated) {
     throw DataError(
         ErrorCode::wrong_format, folder,
         "is a calibration (it has planes of dots and no pair of frames); use gladstone calibrate " + folder);

@@ -6,10 +6,9 @@
 namespace gladstone::inline cases {
 
 CaseKind const& case_kind(Setup const& setup) {
-  for (CaseKind const* one : all_case_kinds)
-    if (&one->experiment == &setup.experiment()) return *one;
-  GLADSTONE_EXPECTS(!"the kind of a case");
-  return *all_case_kinds.front();
+  CaseKind const* const kind = find_kind(all_case_kinds, setup.experiment());
+  GLADSTONE_EXPECTS(kind);
+  return *kind;
 }
 
 void require_experiment(Setup const& setup, Experiment const& needed, std::string const& name,

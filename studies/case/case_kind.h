@@ -37,7 +37,7 @@ struct CaseKind {
   /// @param shared   exposure, images and particles that earlier pairs of the sequence determined
   /// @param entry    receives the numbers for the report, except the folder
   /// @param medium   receives the medium of the case
-  /// @return writer of the case's files, valid as long as `loaded` and `renderer`
+  /// @return writer of the case's files, valid while `loaded` and `renderer` exist
   CaseWriter (*render)(CaseSetup& loaded, Renderer& renderer, ReusableParts const& known,
                        SharedParts::OfCamera const& shared, RenderedCamera& entry, BuiltMedium& medium);
   /// Warns if no source is in the camera's view, or for unsuitable sources.

@@ -81,13 +81,13 @@ double preview_exposure(Scene const& scene, FramePair<double> const& light) {
 
 CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
   auto const start = std::chrono::steady_clock::now();
-  bool const planes = !loaded.setup.experiment().correlated;
+  bool const one_frame_per_plane = !loaded.setup.experiment().correlated;
   CasePreview preview;
-  if (planes) {
+  if (one_frame_per_plane) {
     auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
     preview.plane_z = *std::min_element(loaded.setup.planes.begin(), loaded.setup.planes.end(), nearer);
   }
-  Scene scene = build_scene(planes ? plane_setup(loaded.setup, preview.plane_z) : loaded.setup);
+  Scene scene = build_scene(one_frame_per_plane ? plane_setup(loaded.setup, preview.plane_z) : loaded.setup);
   Setup const& setup = scene.setup;
   preview.at_gradient = setup.experiment().measures_density && setup.medium.field.kind != FieldKind::none;
   Vec2d const centre = 0.5 * Vec2d{setup.camera.columns - 1.0, setup.camera.rows - 1.0};
@@ -107,7 +107,7 @@ CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
   preview.method = rendering.plan.method;
   Detector const detector(setup.camera, preview_exposure(scene, rendering.light));
   preview.frames.push_back(record_part(preview, detector, rendering.light.reference, RandomStream::noise_reference));
-  if (!planes) {
+  if (!one_frame_per_plane) {
     preview.frames.push_back(record_part(preview, detector, rendering.light.flow, RandomStream::noise_flow));
   }
   preview.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

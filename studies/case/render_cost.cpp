@@ -61,14 +61,15 @@ double RenderCost::bytes() const {
 
 RenderCost estimate_render_cost(Setup const& setup) {
   CaseKind const& kind = case_kind(setup);
-  bool const planes = !setup.experiment().correlated;
+  bool const one_frame_per_plane = !setup.experiment().correlated;
   RenderCost cost;
   cost.memory = memory_requirements(setup);
-  Scene const scene = cost_scene(planes ? plane_setup(setup, setup.planes.front()) : setup);
+  Scene const scene = cost_scene(one_frame_per_plane ? plane_setup(setup, setup.planes.front()) : setup);
   RenderPlan plan;
+  plan.given_rays = setup.render.rays_per_dot;
   plan.step = setup.medium.step_mm ? *setup.medium.step_mm * unit::millimetre : scene.medium.coarsest_step;
   plan.method = cost.method = resolve_render_method(scene);
-  double const images = planes ? static_cast<double>(setup.planes.size()) : 1;
+  double const images = one_frame_per_plane ? static_cast<double>(setup.planes.size()) : 1;
   cost.sources = images * kind.expected_sources(scene);
   if (cost.method == RenderMethod::formula) return cost;
   bool const by_table = cost.method == RenderMethod::focused_dots, chief = scene.chief_rays_only();
@@ -76,9 +77,9 @@ RenderCost estimate_render_cost(Setup const& setup) {
     std::vector<MemoryRequirement> const table = focused_dots_memory(setup);
     cost.memory.insert(cost.memory.end(), table.begin(), table.end());
   }
-  cost.rays_are_largest = !setup.render.rays_per_dot && !by_table && !chief;
+  cost.rays_are_largest = !plan.given_rays && !by_table && !chief;
   std::uint64_t const automatic = chief ? 1 : by_table ? initial_table_rays : max_rays_per_source(scene, plan);
-  plan.rays = setup.render.rays_per_dot.value_or(automatic);
+  plan.rays = plan.given_rays.value_or(automatic);
   cost.rays_per_source = cost.expected_rays = static_cast<double>(plan.rays);
   if (kind.expected_rays) {
     double const media = scene.second_medium ? 2 : 1;
@@ -87,7 +88,8 @@ RenderCost estimate_render_cost(Setup const& setup) {
   } else if (by_table && !build_focused_dots(scene)) {  // rendering would refuse the setup and state the reason
     cost.processor_seconds = not_measured;
   } else {
-    cost.processor_seconds = images * render_seconds(scene, plan, planes ? RenderTheory::no : RenderTheory::yes);
+    cost.processor_seconds =
+        images * render_seconds(scene, plan, one_frame_per_plane ? RenderTheory::no : RenderTheory::yes);
   }
   cost.processor_seconds *= measured_share(setup, cost.method);
   cost.expected_seconds = cost.processor_seconds * cost.expected_rays / cost.rays_per_source;

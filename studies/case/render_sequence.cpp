@@ -243,11 +243,9 @@ class SequenceRendering {
 SetupDocument with_first_pair(SetupDocument document) {
   SetupNode const* const sequence = document.find({"sequence"});
   if (!sequence || sequence->kind != SetupNode::Kind::table || sequence->find("pair")) return document;
-  SetupNode const* const experiment = document.find({"experiment"});
-  // particles move from frame to frame; dots are recorded once without medium
-  bool const consecutive = experiment && !find_experiment(experiment->text).sources.on_target;
-  if (!consecutive && !sequence->find("files")) return document;
-  SetupNode first = setup_integer(consecutive ? 0 : 1);
+  Experiment const& experiment = find_experiment(document);
+  if (!experiment.consecutive_frames && !sequence->find("files")) return document;
+  SetupNode first = setup_integer(static_cast<long long>(experiment.first_pair()));
   first.place = sequence->place;
   document.set({"sequence", "pair"}, first);
   return document;

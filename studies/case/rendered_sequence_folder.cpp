@@ -10,6 +10,7 @@
 #include "render/files/output_destination.h"
 #include "render/files/output_file.h"
 #include "render/files/text_file.h"
+#include "render/files/visible_files.h"
 
 namespace gladstone::inline cases {
 namespace {
@@ -20,13 +21,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t longest_summary = 1 << 30;  // size limit of a summary.json that is read [bytes]
 
 }  // namespace
-
-bool contains_visible_files(fs::path const& folder) {
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (!entry->path().filename().string().starts_with('.')) return true;
-  return false;
-}
 
 std::string rendered_sequence_file::frame(std::size_t number) { return fmt::format("frame_{:04}.tif", number); }
 std::string rendered_sequence_file::pair(std::size_t number) { return fmt::format("pair_{:04}", number); }

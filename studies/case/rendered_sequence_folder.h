@@ -19,9 +19,6 @@ std::string frame(std::size_t number);
 std::string pair(std::size_t number);
 }  // namespace rendered_sequence_file
 
-/// Returns true if the folder contains visible files.
-bool contains_visible_files(std::filesystem::path const& folder);
-
 /// Creates the output folder of a sequence and writes its setup, unless an earlier run of the same setup did.
 /// @param setup  setup as written
 /// @throws OutputError if the folder contains other files or the sequence of another setup, or cannot be written

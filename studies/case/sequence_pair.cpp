@@ -9,6 +9,7 @@
 
 #include "render/base/error.h"
 #include "render/files/file_pattern.h"
+#include "render/scene/experiment.h"
 #include "render/setup/setup_node.h"
 
 namespace gladstone::inline cases {
@@ -18,12 +19,12 @@ namespace {
 /// [sequence] is not followed by another one.
 constexpr char const* stand_in = "/";
 
-/// Returns the number of the selected pair, from 1; nullopt if the key `pair` is invalid, which its reader reports.
-std::optional<std::size_t> selected_pair(SetupNode const& sequence) {
+/// Returns the index of the selected pair, from 0; nullopt if the key `pair` is invalid, which its reader reports.
+std::optional<std::size_t> selected_pair(SetupNode const& sequence, std::size_t first) {
   SetupNode const* const pair = sequence.find("pair");
-  if (!pair) return 1;
-  if (pair->kind != SetupNode::Kind::integer || pair->integer < 1) return std::nullopt;
-  return static_cast<std::size_t>(pair->integer);
+  if (!pair) return 0;
+  if (pair->kind != SetupNode::Kind::integer || pair->integer < static_cast<long long>(first)) return std::nullopt;
+  return static_cast<std::size_t>(pair->integer) - first;
 }
 
 /// Returns true if the medium is the field of a file. The other cases are reported by the check of the setup.
@@ -33,13 +34,13 @@ bool has_field_of_file(SetupDocument const& setup) {
 }
 
 /// Returns the density file of the selected pair; nullopt, with a problem of the setup, if it cannot be determined.
-std::optional<std::string> selected_field(SetupDocument& setup) {
+std::optional<std::string> selected_field(SetupDocument& setup, std::size_t first) {
   bool const had_problems = setup.has_problems();
   std::vector<std::string> const files = sequence_fields(setup);
   if (!had_problems && setup.has_problems()) return std::nullopt;
-  std::optional<std::size_t> const pair = selected_pair(*setup.find({"sequence"}));
+  std::optional<std::size_t> const pair = selected_pair(*setup.find({"sequence"}), first);
   if (!pair || files.empty()) return std::nullopt;
-  if (*pair <= files.size()) return files[*pair - 1];
+  if (*pair < files.size()) return files[*pair];
   setup.root()
       .table("sequence")
       .problem("pair",
@@ -84,8 +85,8 @@ std::vector<std::string> sequence_fields(SetupDocument& setup) {
 
 void select_pair(SetupDocument& setup) {
   SetupNode const* const given = setup.find({"sequence", "files"});
-  SetupNode const* const experiment = setup.find({"experiment"});
-  if (!given || (experiment && experiment->text != "bos") || !has_field_of_file(setup)) return;
+  Experiment const& experiment = find_experiment(setup);
+  if (!given || !experiment.measures_density || !has_field_of_file(setup)) return;
   if (SetupNode const* const file = setup.find({"medium", "field", "file"})) {
     if (file->text == stand_in) return;  // an earlier call has reported the problem
     setup.root()
@@ -93,14 +94,15 @@ void select_pair(SetupDocument& setup) {
         .problem("files", "conflicts with medium.field.file (both name the density files); remove medium.field.file");
     return;
   }
-  std::optional<std::string> const selected = selected_field(setup);
+  std::optional<std::string> const selected = selected_field(setup, experiment.first_pair());
   SetupNode file = setup_text(selected.value_or(stand_in));
   file.place = given->place;
   setup.set({"medium", "field", "file"}, file);
   if (!selected) return;
   SetupNode sequence = *setup.find({"sequence"});
   std::erase_if(sequence.members, [](SetupMember const& member) { return member.key == "files"; });
-  if (!sequence.find("pair")) sequence.members.push_back({"pair", setup_integer(1)});
+  if (!sequence.find("pair"))
+    sequence.members.push_back({"pair", setup_integer(static_cast<long long>(experiment.first_pair()))});
   setup.set({"sequence"}, sequence);
 }
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/files/output_folder.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"

@@ -4,10 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "analysis/correlation/pair_assessment.h"
 #include "analysis/vectors/vector_file.h"
@@ -120,9 +118,9 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       bool const one_file = arguments->inputs.size() == 1;
       std::string const a = one_file ? inputs[0] + " (page 1)" : inputs[0];
       std::string const b = one_file ? inputs[0] + " (page 2)" : inputs[1];
-      HostFrames const frames = std::make_from_tuple<HostFrames>(
+      HostFrames const frames(
           one_file ? read_frames(inputs[0], sources)
-                   : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)});
+                   : FramePair<double>{read_frame(a, "reference", sources), read_frame(b, "flow", sources)});
       add_preparation(other.settings, sources);
       measurement = correlate_frames(a, b, frames, other.settings, device);
       if (auto const advice = locking_advice(frames.reference()); advice && frames_correlate(measurement.field))

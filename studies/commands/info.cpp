@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "render/base/error.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/figure_ending.h"

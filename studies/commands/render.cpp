@@ -9,7 +9,7 @@
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
 #include "render/method.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/json_text.h"
 #include "studies/case/preview.h"

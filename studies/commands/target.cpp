@@ -10,7 +10,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/files/output_file.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"

@@ -11,7 +11,7 @@
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 #include "studies/case/case_kind.h"

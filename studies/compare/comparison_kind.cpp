@@ -3,9 +3,8 @@
 namespace gladstone::inline compare {
 
 ComparisonKind const& comparison_kind(Setup const& setup) {
-  for (ComparisonKind const* one : all_comparison_kinds)
-    if (&one->experiment == &setup.experiment()) return *one;
-  return *all_comparison_kinds.front();
+  ComparisonKind const* const kind = find_kind(all_comparison_kinds, setup.experiment());
+  return kind ? *kind : *all_comparison_kinds.front();
 }
 
 ComparisonKind const& comparison_kind(Comparison const& comparison) {

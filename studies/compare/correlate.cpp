@@ -20,7 +20,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/case.h"
 #include "studies/case/peak_locking.h"
 #include "studies/case/truth_file.h"
@@ -157,8 +157,8 @@ Measurement correlate_checked(StoredFrames const& frames, CorrelationSettings co
 
 }  // namespace
 
-Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name, HostFrames const& frames,
-                             CorrelationSettings const& settings, Backend const& device) {
+Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name,
+                             StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device) {
   Image<double> const &reference = frames.reference(), &flow = frames.flow();
   NamedFrame const a{reference_name, reference.columns(), reference.rows()}, b{flow_name, flow.columns(), flow.rows()};
   check_sizes(a, b, settings);
@@ -216,13 +216,13 @@ void add_preparation(CorrelationSettings const& settings, SourceFiles& sources) 
     sources.add(fmt::format("preparation_{}", ++number), file, SourceFiles::Holds::pixels);
 }
 
-std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources) {
+FramePair<double> read_frames(std::string const& pair, SourceFiles& sources) {
   ImageMetadata metadata;
   sources.add("", pair, SourceFiles::Holds::bytes);
-  std::array<Image<double>, 2> frames = read_frame_pair(pair, &metadata);
+  FramePair<double> frames = read_frame_pair(pair, &metadata);
   warn_of_reading(pair, metadata);
-  sources.add_known("reference", pixel_sha256(frames[0], metadata.sample_bits));
-  sources.add_known("flow", pixel_sha256(frames[1], metadata.sample_bits));
+  sources.add_known("reference", pixel_sha256(frames.reference, metadata.sample_bits));
+  sources.add_known("flow", pixel_sha256(frames.flow, metadata.sample_bits));
   return frames;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "analysis/correlation/correlation_settings.h"
 #include "analysis/vectors/displacement_field.h"
+#include "render/base/frame_pair.h"
 #include "render/base/image.h"
 #include "render/base/image_samples.h"
 #include "render/files/source_files.h"
@@ -22,8 +22,8 @@ struct Measurement {
 
 /// Correlates two images, and estimates the uncertainty of the vectors by the method of choose_uncertainty().
 /// @throws DataError if they differ in size or are smaller than an interrogation window
-Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name, HostFrames const& frames,
-                             CorrelationSettings const& settings, Backend const& device);
+Measurement correlate_frames(std::string const& reference_name, std::string const& flow_name,
+                             StoredFrames const& frames, CorrelationSettings const& settings, Backend const& device);
 /// Like correlate_frames(), for images that another library stores in the memory of the first GPU; they are not copied
 /// to the host unless the settings require the CPU.
 Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples const& reference,
@@ -51,7 +51,7 @@ CorrelationFile default_correlation(std::vector<std::string> const& overrides, P
 Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources);
 
 /// Reads both frames of a two-page file and adds their hashes to `sources`.
-std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources);
+FramePair<double> read_frames(std::string const& pair, SourceFiles& sources);
 
 /// Correlates many pairs for one common displacement field by correlate_ensemble(). Frames are read one pair at a time,
 /// in every pass, and added to `sources` as reference_1, flow_1, reference_2, ...

@@ -13,8 +13,8 @@
 #include "render/files/file_lock.h"
 #include "render/files/output_destination.h"
 #include "render/files/output_file.h"
+#include "render/files/visible_files.h"
 #include "studies/case/json_text.h"
-#include "studies/case/rendered_sequence_folder.h"
 #include "studies/case/warning_json.h"
 #include "studies/case/warning_log.h"
 

@@ -16,7 +16,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/files/stop_point.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/warning_log.h"
 #include "studies/compare/correlate.h"
@@ -75,11 +75,11 @@ std::vector<std::string> find_sheet_images(StereoOptions const& options) {
 /// they were recorded: the windows leave out a pixel of the plane if one of the pixels that it is interpolated from is
 /// masked.
 DisplacementField correlate_dewarped(StereoInput const& input, std::string const& place,
-                                     std::array<Image<double>, 2> const& frames, stereo::Dewarping const& dewarping,
+                                     FramePair<double> const& frames, stereo::Dewarping const& dewarping,
                                      Backend const& device) {
   CorrelationSettings settings = input.vectors.settings;
   HostFrames const prepared =
-      prepare_frames(HostFrames(frames[0], frames[1]), std::exchange(settings.preparation, FramePreparation{}));
+      prepare_frames(HostFrames(frames), std::exchange(settings.preparation, FramePreparation{}));
   std::string const problem = window_problem(settings, dewarping.grid.columns, dewarping.grid.rows);
   if (!problem.empty()) throw DataError(ErrorCode::wrong_shape, place, "dewarped: " + problem);
   auto const dewarp = [&](Image<double> const& frame) {
@@ -99,11 +99,12 @@ DisplacementField correlate_dewarped(StereoInput const& input, std::string const
 }
 
 /// Throws if the frames of a case differ in size.
-void require_equal_sizes(std::array<Image<double>, 2> const& frames, std::string const& place) {
-  if (frames[0].columns() == frames[1].columns() && frames[0].rows() == frames[1].rows()) return;
+void require_equal_sizes(FramePair<double> const& frames, std::string const& place) {
+  auto const& [reference, flow] = frames;
+  if (reference.columns() == flow.columns() && reference.rows() == flow.rows()) return;
   throw DataError(ErrorCode::wrong_shape, in_case(place, case_file::flow),
-                  fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", frames[1].columns(),
-                              frames[1].rows(), case_file::reference, frames[0].columns(), frames[0].rows()));
+                  fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", flow.columns(),
+                              flow.rows(), case_file::reference, reference.columns(), reference.rows()));
 }
 
 /// Dewarps the frames of both cases onto the part of the plane that they have in common, and correlates them.
@@ -111,25 +112,26 @@ void require_equal_sizes(std::array<Image<double>, 2> const& frames, std::string
 stereo::Dewarping measure_dewarped(std::array<StereoInput*, 2> const& inputs, StereoOptions const& options,
                                    std::vector<stereo::SimultaneousImages> known, stereo::ObjectPlane const& plane,
                                    double pixel_size, SourceFiles& sources, Backend const& device) {
-  std::array<std::array<Image<double>, 2>, 2> frames;
+  std::array<FramePair<double>, 2> frames;
   std::array<std::array<int, 2>, 2> size{};
   for (std::size_t i = 0; i < 2; ++i) {
     char const* names[] = {case_file::reference, case_file::flow};
     for (std::size_t k = 0; k < 2; ++k) {
       std::string const file = in_case(options.inputs[i], names[k]);
       std::string const name = fmt::format("{}_{}", k == 0 ? "reference" : "flow", i == 0 ? "a" : "b");
+      Image<double>& frame = k == 0 ? frames[i].reference : frames[i].flow;
       if (known.empty()) {
-        frames[i][k] = sources.add_image(name, file);
+        frame = sources.add_image(name, file);
       } else {
         sources.add(name, file, SourceFiles::Holds::pixels);
-        frames[i][k] = std::move(known[k][i]);
+        frame = std::move(known[k][i]);
       }
     }
     require_equal_sizes(frames[i], options.inputs[i]);
     std::size_t number = 0;
     for (std::string const& file : inputs[i]->vectors.settings.preparation.files)
       sources.add(fmt::format("preparation_{}_{}", i == 0 ? "a" : "b", ++number), file, SourceFiles::Holds::pixels);
-    size[i] = {frames[i][0].columns(), frames[i][0].rows()};
+    size[i] = {frames[i].reference.columns(), frames[i].reference.rows()};
   }
   stereo::Dewarping dewarping{
       plane, stereo::find_common_view({&inputs[0]->camera.camera, &inputs[1]->camera.camera}, size, plane, pixel_size)};

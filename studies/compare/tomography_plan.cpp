@@ -13,7 +13,7 @@
 #include "render/base/progress.h"
 #include "render/files/output_file.h"
 #include "render/medium/field_volume.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/case.h"
 #include "studies/compare/tomography.h"
 #include "studies/compare/tomography_file.h"

@@ -13,7 +13,7 @@
 #include "render/files/output_file.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/experiment.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/case_files.h"
 #include "studies/design/bos_sheet.h"
 #include "studies/design/piv_sheet.h"
@@ -87,8 +87,9 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
   report.warnings.insert(report.warnings.end(), neglected.begin(), neglected.end());
   Warnings const of_field = header_warnings(loaded.setup.medium);
   report.warnings.insert(report.warnings.end(), of_field.begin(), of_field.end());
-  for (SheetKind const& kind : sheet_kinds)
-    if (&kind.experiment == &loaded.setup.experiment()) kind.add(request, loaded, uncertain, report);
+  if (SheetKind const* const kind = find_kind(sheet_kinds, loaded.setup.experiment())) {
+    kind->add(request, loaded, uncertain, report);
+  }
   report.text += fmt::format("{}\n{}", request.setup, sheet_text(report.sheet));
   if (report.uncertainty) report.text += uncertainty_text(*report.uncertainty);
 }

@@ -235,8 +235,9 @@ SetupOverview make_setup_overview(CaseSetup loaded) {
   SetupOverview overview;
   overview.cost = estimate_render_cost(loaded.setup);
   overview.experiment = loaded.setup.experiment().name;
-  for (OverviewKind const& kind : overview_kinds)
-    if (&kind.experiment == &loaded.setup.experiment()) kind.add(overview, loaded);
+  if (OverviewKind const* const kind = find_kind(overview_kinds, loaded.setup.experiment())) {
+    kind->add(overview, loaded);
+  }
   add_lenslets(overview.rows, loaded.setup);
   return overview;
 }

@@ -97,10 +97,8 @@ SeedFigure4Instant figure_instant(std::string const& heading, FieldMap const& fi
 /// @param place  folder of the case
 Measurement correlate_instant(CaseSetup const& loaded, WrittenCase const& made, std::string const& place,
                               Backend const& device) {
-  StoredFrames const& levels = *made.frames.levels;
-  HostFrames const frames(levels.reference(), levels.flow());
-  Measurement measured = correlate_frames(in_case(place, case_file::reference), in_case(place, case_file::flow), frames,
-                                          loaded.correlate, device);
+  Measurement measured = correlate_frames(in_case(place, case_file::reference), in_case(place, case_file::flow),
+                                          *made.frames.levels, loaded.correlate, device);
   FileOrigin origin{"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, measured.device};
   origin.sources.add_known("reference", made.outcome.reference_sha256);
   origin.sources.add_known("flow", made.outcome.flow_sha256);

@@ -108,9 +108,8 @@ LayoutKind const* find_layout_kind(Setup const& setup) {
   if (setup.pose || setup.camera.tilted() || !setup.elements.empty() || !std::isfinite(setup.lens.f_number)) {
     return nullptr;
   }
-  for (LayoutKind const& kind : layout_kinds)
-    if (&kind.experiment == &setup.experiment() && kind.covers(setup)) return &kind;
-  return nullptr;
+  LayoutKind const* const kind = find_kind(layout_kinds, setup.experiment());
+  return kind && kind->covers(setup) ? kind : nullptr;
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "analysis/errors/error_summary.h"
 #include "render/files/text_file.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/warning_log.h"
 #include "studies/compare/reconstruct_case.h"
 #include "studies/design/measurement_inputs.h"

@@ -46,9 +46,7 @@ SetupDocument compose(StudyFile const& study, std::vector<AxisValue> const& valu
   for (std::size_t k = 0; k < values.size(); ++k) document.set(study.axes[k].path, values[k].node);
   SetupNode number = setup_integer(static_cast<long long>(seed));
   number.place = study.place;
-  SetupNode const* const experiment = document.find({"experiment"});
-  SourceKind const& sources =
-      find_experiment(experiment && experiment->kind == SetupNode::Kind::text ? experiment->text : "").sources;
+  SourceKind const& sources = find_experiment(document).sources;
   std::vector<std::vector<std::string>> const seeds{
       {sources.seed_table, "seed"}, {"render", "seed"}, {"camera", "noise", "seed"}};
   for (std::vector<std::string> const& path : seeds) {

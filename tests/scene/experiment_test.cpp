@@ -26,6 +26,28 @@ TEST(Experiment, IsSelectedByItsNameInASetup) {
   EXPECT_EQ(&find_experiment("schlieren"), all_experiments.front());
 }
 
+TEST(Experiment, IsNamedByASetupThatIsNotYetRead) {
+  auto const find = [](std::string const& text) {
+    return &find_experiment(SetupDocument::from_text(text, "case.toml"));
+  };
+  for (Experiment const* one : all_experiments) {
+    EXPECT_EQ(find("experiment = \"" + std::string(one->name) + "\"\n"), one);
+  }
+  EXPECT_EQ(find(""), all_experiments.front());
+  EXPECT_EQ(find("experiment = 2\n"), all_experiments.front());
+}
+
+// Without the key `pair`, a sequence describes its first pair: frames 0 and 1 for PIV, the reference and frame 1 for
+// BOS.
+TEST(Experiment, TheFirstPairOfASequenceConsistsOfTheFirstTwoFrames) {
+  EXPECT_EQ(bos_experiment.first_pair(), 1U);
+  EXPECT_EQ(piv_experiment.first_pair(), 0U);
+  for (Experiment const* one : all_experiments) {
+    SequenceSetup const sequence{.consecutive = one->consecutive_frames, .pair = one->first_pair()};
+    EXPECT_EQ(sequence.frames_of(sequence.pair), (std::array<std::uint64_t, 2>{0, 1})) << one->name;
+  }
+}
+
 // The light of a plane's dots passes no medium, and no deflection table applies to several planes.
 TEST(Experiment, APlaneOfACalibrationIsRenderedRayByRay) {
   gladstone::Setup const plane = plane_setup(read_alone("experiment = \"calibration\"\n"), 1e-3);

@@ -1,15 +1,14 @@
-#include "render/sensor/sensor.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "render/sensor/exposure.h"
+#include "render/sensor/posed_sensor.h"
 
 namespace gladstone {
 namespace {
 
-Sensor<double> const sensor{0.867, 10e-6, 640, 480};
+PosedSensor<double> const sensor{{}, 10e-6, 640, 480, {}};
 
 // Pixel centres are at integers from 0, so that the centre of 640 x 480 pixels is at (319.5, 239.5).
 TEST(Sensor, AxisHitsTheMiddleOfThePixels) { EXPECT_EQ(sensor.to_pixel(0, 0), (Vec2d{319.5, 239.5})); }

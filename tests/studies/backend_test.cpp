@@ -30,7 +30,7 @@ TEST(Measurement, NamesTheDeviceThatCorrelated) {
   CorrelationSettings settings;
   settings.window_px = {32};
   auto const device_of = [&] {
-    return correlate_frames("a.tif", "b.tif", {pair.reference, pair.flow}, settings, device).device;
+    return correlate_frames("a.tif", "b.tif", HostFrames(pair.reference, pair.flow), settings, device).device;
   };
   EXPECT_EQ(device_of(), "cuda");
   settings.method = "spc";
@@ -94,7 +94,7 @@ TEST(Measurement, KeepsTheUncertaintyThatCameWithTheVectors) {
   ParticlePair const other = render_particle_pair({.columns = 256, .rows = 256, .noise = 0.02, .seed = 2}, still);
   Backend const without{std::make_unique<NominalGpu>(), make_correlator};
   auto const measured = [&](Backend const& by) {
-    return correlate_frames("a.tif", "b.tif", {pair.reference, pair.flow}, settings, by).field;
+    return correlate_frames("a.tif", "b.tif", HostFrames(pair.reference, pair.flow), settings, by).field;
   };
   for (Vec2d const& sigma : measured(device).sigma_px) EXPECT_EQ(sigma, (Vec2d{0.25, 0.5}));
   for (int j = 0; j < 256; ++j)

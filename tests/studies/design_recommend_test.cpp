@@ -5,7 +5,7 @@
 #include <random>
 
 #include "render/base/error.h"
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 #include "studies/case/shared_folder.h"
 #include "studies/design/branches.h"
 #include "studies/design/recommend.h"

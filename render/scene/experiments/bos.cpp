@@ -20,7 +20,8 @@ void read_bos_z_d(Setup& setup, SetupTable geometry) {
 std::optional<SequenceSetup> read_field_sequence(SetupTable table, FieldSetup const& field) {
   if (!table.present()) return std::nullopt;
   SequenceSetup setup;
-  setup.pair = static_cast<std::size_t>(table.integer("pair", 1, 1, max_sequence_frames));
+  auto const first = static_cast<long long>(bos_experiment.first_pair());
+  setup.pair = static_cast<std::size_t>(table.integer("pair", first, first, max_sequence_frames));
   // The files were replaced by the one of the pair if the case was selected by select_pair().
   if (!table.has("files") && !table.has("pair")) {
     table.problem("files", "is missing (density files, one for each frame); add it, files = [\"rho_*.h5\"]",
@@ -128,6 +129,7 @@ constinit Experiment const bos_experiment{.name = "bos",
                                           .measures_density = true,
                                           .correlated = true,
                                           .medium_in_first_frame = false,
+                                          .consecutive_frames = false,
                                           .reason_for_rays = "",
                                           .read_z_d = read_bos_z_d,
                                           .read = read_bos,

@@ -15,10 +15,11 @@ namespace {
 std::optional<SequenceSetup> read_particle_sequence(SetupTable table) {
   if (!table.present()) return std::nullopt;
   SequenceSetup setup;
-  setup.consecutive = true;
+  setup.consecutive = piv_experiment.consecutive_frames;
   setup.frames = static_cast<std::size_t>(table.required_integer("frames", 2, max_sequence_frames));
   setup.dt = table.required_number("dt_us", Range::positive(1e12)) * unit::microsecond;
-  setup.pair = static_cast<std::size_t>(table.integer("pair", 0, 0, max_sequence_frames));
+  auto const first = static_cast<long long>(piv_experiment.first_pair());
+  setup.pair = static_cast<std::size_t>(table.integer("pair", first, first, max_sequence_frames));
   table.refuse("files", "applies to BOS only (the particles of PIV move along [flow]); remove it");
   if (setup.pair + 1 >= setup.frames) {
     table.problem("pair", fmt::format("exceeds the last pair, {}, of {} frames (pairs are counted from 0); choose a "
@@ -90,6 +91,7 @@ constinit Experiment const piv_experiment{.name = "piv",
                                           .measures_density = false,
                                           .correlated = true,
                                           .medium_in_first_frame = true,
+                                          .consecutive_frames = true,
                                           .reason_for_rays = "particles are not flat dots",
                                           .read_z_d = read_piv_z_d,
                                           .read = read_piv,

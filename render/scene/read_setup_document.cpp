@@ -1,4 +1,4 @@
-#include "render/scene/setup_document.h"
+#include "render/scene/read_setup_document.h"
 
 #include <filesystem>
 
