@@ -28,9 +28,13 @@ char const* margin_word(Margin margin) {
   return words[static_cast<int>(margin)];
 }
 
+ResultRow count_row(std::string key, std::string label, std::size_t count) {
+  return {.key = std::move(key), .label = std::move(label), .value = static_cast<double>(count), .whole = true};
+}
+
 std::string value_text(ResultRow const& row) {
   if (!std::isfinite(row.value)) return std::isnan(row.value) ? "unknown" : "infinite";
-  return fmt::format("{:.6g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
+  return fmt::format("{:.{}g}{}{}", row.value, row.whole ? 15 : 6, row.unit.empty() ? "" : " ", row.unit);
 }
 
 void append_rows(std::vector<ResultRow>& rows, std::vector<ResultRow> more, std::string const& object) {
