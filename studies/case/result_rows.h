@@ -34,6 +34,9 @@ struct ResultRow {
   bool whole = false;     ///< true: a count, an integer in JSON
 };
 
+/// Returns a row without symbol, formula, source and margin.
+ResultRow plain_row(std::string key, std::string label, double value, std::string unit = "", std::string note = "");
+
 /// Returns a row with a count.
 ResultRow count_row(std::string key, std::string label, std::size_t count);
 

@@ -24,7 +24,7 @@ std::vector<double> select_finite(std::vector<double> const& values) {
 }
 
 ResultRow density_row(std::string key, std::string label, double value) {
-  return {.key = std::move(key), .label = std::move(label), .value = value, .unit = "kg/m^3"};
+  return plain_row(std::move(key), std::move(label), value, "kg/m^3");
 }
 
 /// Returns the least, median and largest of the finite values; NaN without any.
@@ -36,16 +36,12 @@ std::vector<ResultRow> range_rows(std::string const& label, std::vector<double> 
 }
 
 std::vector<ResultRow> axis_rows(AxisymmetryResult const& flow) {
-  return {{.key = "position_mm", .label = "position of the axis", .value = 1e3 * flow.axis.position, .unit = "mm"},
-          {.key = "sigma_mm", .label = "its standard uncertainty", .value = 1e3 * flow.axis.sigma, .unit = "mm"},
-          {.key = "lambda", .label = "regularisation parameter", .value = flow.lambda},
-          {.key = "asymmetry",
-           .label = "asymmetry of the gradient",
-           .value = flow.asymmetry,
-           .note = std::isfinite(flow.asymmetry) ? "" : "one side of the axis is measured"},
-          {.key = "border_gradient",
-           .label = "gradient at the border over that of all radii",
-           .value = flow.border_gradient}};
+  char const* const note = std::isfinite(flow.asymmetry) ? "" : "one side of the axis is measured";
+  return {plain_row("position_mm", "position of the axis", 1e3 * flow.axis.position, "mm"),
+          plain_row("sigma_mm", "its standard uncertainty", 1e3 * flow.axis.sigma, "mm"),
+          plain_row("lambda", "regularisation parameter", flow.lambda),
+          plain_row("asymmetry", "asymmetry of the gradient", flow.asymmetry, "", note),
+          plain_row("border_gradient", "gradient at the border over that of all radii", flow.border_gradient)};
 }
 
 std::vector<ResultRow> density_error_rows(DensityErrors const& errors) {
@@ -54,10 +50,8 @@ std::vector<ResultRow> density_error_rows(DensityErrors const& errors) {
           density_row("rms", "error, rms", errors.rms),
           density_row("largest", "error, largest", errors.largest),
           density_row("contrast", "standard deviation of the true density", errors.contrast),
-          {.key = "coverage",
-           .label = "fraction of the errors within one sigma",
-           .value = errors.coverage,
-           .note = "normal distribution: 0.683"}};
+          plain_row("coverage", "fraction of the errors within one sigma", errors.coverage, "",
+                    "normal distribution: 0.683")};
 }
 
 /// Returns the quantities other than the causes of the error.
@@ -69,9 +63,8 @@ std::vector<ResultRow> density_rows(Reconstruction const& reconstruction) {
   append_rows(rows, range_rows("standard uncertainty", reconstruction.sigma), "sigma_kg_m3");
   append_rows(rows, range_rows("contribution of the vectors to it", reconstruction.sigma_random), "sigma_random_kg_m3");
   rows.push_back(density_row("reference_density_kg_m3", "reference density", reconstruction.reference_density));
-  rows.push_back({.key = "white_noise_gain",
-                  .label = "amplification of white noise by the deconvolution",
-                  .value = reconstruction.white_noise_gain});
+  rows.push_back(plain_row("white_noise_gain", "amplification of white noise by the deconvolution",
+                           reconstruction.white_noise_gain));
   if (reconstruction.axisymmetry) append_rows(rows, axis_rows(*reconstruction.axisymmetry), "axis");
   if (!reconstruction.truth.empty())
     append_rows(rows, density_error_rows(compute_density_errors(reconstruction)), "error_kg_m3");
