@@ -7,7 +7,7 @@
 namespace gladstone::inline commands {
 
 /// Help of the option --csv.
-constexpr char const* csv_help = "Print the quantities as CSV: key, symbol, label, value, unit and source";
+inline constexpr char const* csv_help = "Print the quantities as CSV: key, symbol, label, value, unit and source";
 
 /// Validators of option values; refusal() formats their messages.
 CLI::Validator one_of(std::vector<std::string> words);
