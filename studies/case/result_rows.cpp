@@ -28,9 +28,21 @@ char const* margin_word(Margin margin) {
   return words[static_cast<int>(margin)];
 }
 
+ResultRow plain_row(std::string key, std::string label, double value, std::string unit, std::string note) {
+  return {.key = std::move(key),
+          .label = std::move(label),
+          .value = value,
+          .unit = std::move(unit),
+          .note = std::move(note)};
+}
+
+ResultRow count_row(std::string key, std::string label, std::size_t count) {
+  return {.key = std::move(key), .label = std::move(label), .value = static_cast<double>(count), .whole = true};
+}
+
 std::string value_text(ResultRow const& row) {
   if (!std::isfinite(row.value)) return std::isnan(row.value) ? "unknown" : "infinite";
-  return fmt::format("{:.6g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
+  return fmt::format("{:.{}g}{}{}", row.value, row.whole ? 15 : 6, row.unit.empty() ? "" : " ", row.unit);
 }
 
 void append_rows(std::vector<ResultRow>& rows, std::vector<ResultRow> more, std::string const& object) {
@@ -75,9 +87,11 @@ std::string rows_csv(std::vector<ResultRow> const& rows) {
 }
 
 std::string groups_text(std::string const& heading, std::vector<ResultGroup> const& groups, int digits) {
-  std::string header = fmt::format("  {:<16}", heading), text;
+  std::size_t width = 16;
+  for (ResultGroup const& group : groups) width = std::max(width, group.name.size());
+  std::string header = fmt::format("  {:<{}}", heading, width), text;
   for (ResultGroup const& group : groups) {
-    text += fmt::format("  {:<16}", group.name);
+    text += fmt::format("  {:<{}}", group.name, width);
     for (ResultRow const& row : group.rows) {
       std::string const column = row.label + (row.unit.empty() ? "" : " [" + row.unit + ']');
       if (&group == &groups.front()) header += fmt::format("  {:>12}", column);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -32,6 +33,12 @@ struct ResultRow {
   std::string note = {};  ///< criterion of the margin, or a remark
   bool whole = false;     ///< true: a count, an integer in JSON
 };
+
+/// Returns a row without symbol, formula, source and margin.
+ResultRow plain_row(std::string key, std::string label, double value, std::string unit = "", std::string note = "");
+
+/// Returns a row with a count.
+ResultRow count_row(std::string key, std::string label, std::size_t count);
 
 /// Returns a value with its unit, "infinite" or "unknown".
 std::string value_text(ResultRow const& row);

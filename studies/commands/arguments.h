@@ -6,6 +6,9 @@
 
 namespace gladstone::inline commands {
 
+/// Help of the option --csv.
+inline constexpr char const* csv_help = "Print the quantities as CSV: key, symbol, label, value, unit and source";
+
 /// Validators of option values; refusal() formats their messages.
 CLI::Validator one_of(std::vector<std::string> words);
 CLI::Validator whole_number(long long low, long long high);

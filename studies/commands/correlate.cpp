@@ -15,6 +15,7 @@
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/case/peak_locking.h"
+#include "studies/case/result_rows.h"
 #include "studies/case/warning_json.h"
 #include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
@@ -129,11 +130,10 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       write_vectors(written, measurement.field,
                     {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
     }
-    long long counts[4] = {};
+    std::size_t counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];
     DisplacementField const& field = measurement.field;
-    auto const ambiguous =
-        field.ambiguous.size() - std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::none);
+    auto const clear = std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::none);
     for (Warning const& warning : field.warnings) log_warning(at_place(written, warning));
     bool const any_valid = counts[0] + counts[1] > 0;
     if (!any_valid && field.warnings.empty()) {
@@ -143,24 +143,24 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                "all {} vectors are invalid; check that both frames show the same scene, with dots in every window",
                field.size())});
     }
-    nlohmann::json const json{{"vectors", field.size()},
-                              {"file", written},
-                              {"valid", counts[0]},
-                              {"replaced", counts[1]},
-                              {"masked", counts[2]},
-                              {"invalid", counts[3]},
-                              {"ambiguous", ambiguous},
-                              {"verdict", verdict_text(field.verdict)},
-                              {"verdict_code", verdict_code(field.verdict.kind)},
-                              {"uncertainty_method", field.uncertainty_method},
-                              {"uncertainty_key", field.uncertainty_key},
-                              {"warnings", to_strings(field.warnings)},
-                              {"warning_records", field.warnings},
-                              {"device", measurement.device},
-                              {"seconds_correlate", measurement.seconds}};
-    print_result(options, json_text(json),
-                 fmt::format("{}: {} vectors, {} replaced, {} masked, {} invalid, {:.2f} s", written, field.size(),
-                             counts[1], counts[2], counts[3], measurement.seconds));
+    std::vector<ResultRow> const rows{
+        count_row("vectors", "vectors", field.size()),
+        count_row("valid", "valid", counts[0]),
+        count_row("replaced", "replaced", counts[1]),
+        count_row("masked", "masked", counts[2]),
+        count_row("invalid", "invalid", counts[3]),
+        count_row("ambiguous", "ambiguous", field.ambiguous.size() - static_cast<std::size_t>(clear)),
+        {.key = "seconds_correlate", .label = "duration", .value = measurement.seconds, .unit = "s"}};
+    nlohmann::json json{{"file", written},
+                        {"verdict", verdict_text(field.verdict)},
+                        {"verdict_code", verdict_code(field.verdict.kind)},
+                        {"uncertainty_method", field.uncertainty_method},
+                        {"uncertainty_key", field.uncertainty_key},
+                        {"warnings", to_strings(field.warnings)},
+                        {"warning_records", field.warnings},
+                        {"device", measurement.device}};
+    json.update(rows_json(rows));
+    print_result(options, json_text(json), written + '\n' + rows_text(rows));
     return any_valid ? ok : check_missed;
   };
 }

@@ -54,7 +54,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--x", arguments->x, "Size parameter pi d n / lambda of the sphere, for info mie");
   app.add_option("--m", arguments->m,
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
-  app.add_flag("--csv", arguments->csv, "Print the quantities as CSV: key, symbol, label, value, unit and source");
+  app.add_flag("--csv", arguments->csv, csv_help);
   return [arguments, &options] {
     check_figure_ending(arguments->figure);
     if (arguments->kind == "mie") {

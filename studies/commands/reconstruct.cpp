@@ -11,6 +11,7 @@
 #include "render/files/output_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
+#include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"
@@ -34,7 +35,7 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     std::string place, output, vectors, conventions;
     DensityArguments density;
-    bool budget = false, no_figures = false;
+    bool budget = false, no_figures = false, csv = false;
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("case", arguments->place,
@@ -51,6 +52,7 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
                "Split the error of a rendered case into its causes, from the comparison of the vectors with truth and "
                "theory, which is computed unless gladstone compare has stored it");
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figure");
+  app.add_flag("--csv", arguments->csv, csv_help);
   return [arguments, &options] {
     Backend const device = options.open_device();
     ReconstructOptions reconstruct = arguments->density.options();
@@ -72,7 +74,8 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
     if (!arguments->no_figures) draw_density(figure, result);
     nlohmann::ordered_json json = summarize_reconstruction(result);
     json["file"] = output;
-    print_result(options, json_text(json), reconstruction_report(result));
+    print_result(options, json_text(json),
+                 arguments->csv ? rows_csv(reconstruction_rows(result)) : reconstruction_report(result));
     return ok;
   };
 }

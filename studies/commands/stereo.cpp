@@ -47,7 +47,7 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
     double sheet_z_mm = 0.0;
     std::optional<double> spacing_mm;
     std::vector<double> slope;
-    bool no_figures = false;
+    bool no_figures = false, csv = false;
   };
   auto arguments = std::make_shared<Arguments>();
   StereoOptions& given = arguments->stereo;
@@ -94,6 +94,7 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
                  "rejected, default 4; 0: accept all")
       ->check(non_negative_number());
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figure");
+  app.add_flag("--csv", arguments->csv, csv_help);
   return [arguments, &options] {
     Backend const device = options.open_device();
     StereoOptions stereo = arguments->stereo;
@@ -113,7 +114,8 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
     if (!arguments->no_figures) draw_stereo(figure, measurement);
     nlohmann::ordered_json json = summarize_stereo(measurement);
     json["file"] = output;
-    print_result(options, json_text(json), stereo_report(measurement));
+    print_result(options, json_text(json),
+                 arguments->csv ? rows_csv(stereo_rows(measurement)) : stereo_report(measurement));
     return ok;
   };
 }

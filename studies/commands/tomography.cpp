@@ -38,7 +38,7 @@ struct TomographyArguments {
   std::optional<double> spacing_mm;
   std::optional<int> views;
   double arc_deg = 180.0;
-  bool no_figures = false;
+  bool no_figures = false, csv = false;
 };
 
 void add_input_options(CLI::App& app, TomographyArguments& given) {
@@ -102,6 +102,7 @@ void add_volume_options(CLI::App& app, TomographyArguments& given) {
          "change of a node by the views in each sweep")
       ->check(non_negative_number());
   app.add_flag("--no-figures", given.no_figures, "Draw no figure");
+  app.add_flag("--csv", given.csv, csv_help);
 }
 
 TomographyOptions convert_arguments(TomographyArguments const& given) {
@@ -170,7 +171,8 @@ CommandBody attach_tomography(CLI::App& app, GlobalOptions const& options) {
     if (!arguments->no_figures) draw_tomography(figure, result);
     nlohmann::ordered_json json = summarize_tomography(result);
     json["file"] = output;
-    print_result(options, json_text(json), tomography_report(result));
+    print_result(options, json_text(json),
+                 arguments->csv ? rows_csv(tomography_rows(result)) : tomography_report(result));
     return static_cast<int>(ok);
   };
 }

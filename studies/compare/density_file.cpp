@@ -6,12 +6,12 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "analysis/errors/error_summary.h"
-#include "render/base/not_a_number.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/flat_values.h"
-#include "studies/case/json_text.h"
+#include "studies/case/result_rows.h"
 #include "studies/compare/density_table.h"
 
 namespace gladstone::inline compare {
@@ -23,23 +23,60 @@ std::vector<double> select_finite(std::vector<double> const& values) {
   return finite;
 }
 
-/// Least, median and largest of the finite values; NaN without any.
-struct ValueRange {
-  std::size_t count = 0;
-  double least = not_a_number, median = not_a_number, largest = not_a_number;
-};
-
-ValueRange find_range(std::vector<double> const& values) {
-  std::vector<double> const finite = select_finite(values);
-  if (finite.empty()) return {};
-  auto const [least, largest] = std::minmax_element(finite.begin(), finite.end());
-  return {finite.size(), *least, quantile(finite, 0.5), *largest};
+ResultRow density_row(std::string key, std::string label, double value) {
+  return plain_row(std::move(key), std::move(label), value, "kg/m^3");
 }
 
-nlohmann::ordered_json range_json(ValueRange const& range) {
-  return {{"least", number_or_null(range.least)},
-          {"median", number_or_null(range.median)},
-          {"largest", number_or_null(range.largest)}};
+/// Returns the least, median and largest of the finite values; NaN without any.
+std::vector<ResultRow> range_rows(std::string const& label, std::vector<double> const& values) {
+  std::vector<double> const finite = select_finite(values);
+  return {density_row("least", label + ", least", quantile(finite, 0.0)),
+          density_row("median", label + ", median", quantile(finite, 0.5)),
+          density_row("largest", label + ", largest", quantile(finite, 1.0))};
+}
+
+std::vector<ResultRow> axis_rows(AxisymmetryResult const& flow) {
+  char const* const note = std::isfinite(flow.asymmetry) ? "" : "one side of the axis is measured";
+  return {plain_row("position_mm", "position of the axis", 1e3 * flow.axis.position, "mm"),
+          plain_row("sigma_mm", "its standard uncertainty", 1e3 * flow.axis.sigma, "mm"),
+          plain_row("lambda", "regularisation parameter", flow.lambda),
+          plain_row("asymmetry", "asymmetry of the gradient", flow.asymmetry, "", note),
+          plain_row("border_gradient", "gradient at the border over that of all radii", flow.border_gradient)};
+}
+
+std::vector<ResultRow> density_error_rows(DensityErrors const& errors) {
+  return {count_row("count", "nodes with a true density", errors.count),
+          density_row("bias", "error, bias", errors.bias),
+          density_row("rms", "error, rms", errors.rms),
+          density_row("largest", "error, largest", errors.largest),
+          density_row("contrast", "standard deviation of the true density", errors.contrast),
+          plain_row("coverage", "fraction of the errors within one sigma", errors.coverage, "",
+                    "normal distribution: 0.683")};
+}
+
+/// Returns the quantities other than the causes of the error.
+std::vector<ResultRow> density_rows(Reconstruction const& reconstruction) {
+  std::vector<ResultRow> rows{
+      count_row("columns", "columns", reconstruction.grid.columns), count_row("rows", "rows", reconstruction.grid.rows),
+      count_row("determined", "nodes with a density", select_finite(reconstruction.density).size())};
+  append_rows(rows, range_rows("density", reconstruction.density), "density_kg_m3");
+  append_rows(rows, range_rows("standard uncertainty", reconstruction.sigma), "sigma_kg_m3");
+  append_rows(rows, range_rows("contribution of the vectors to it", reconstruction.sigma_random), "sigma_random_kg_m3");
+  rows.push_back(density_row("reference_density_kg_m3", "reference density", reconstruction.reference_density));
+  rows.push_back(plain_row("white_noise_gain", "amplification of white noise by the deconvolution",
+                           reconstruction.white_noise_gain));
+  if (reconstruction.axisymmetry) append_rows(rows, axis_rows(*reconstruction.axisymmetry), "axis");
+  if (!reconstruction.truth.empty())
+    append_rows(rows, density_error_rows(compute_density_errors(reconstruction)), "error_kg_m3");
+  return rows;
+}
+
+/// Returns the causes of the error.
+std::vector<ResultGroup> cause_groups(Reconstruction const& reconstruction) {
+  std::vector<ResultGroup> groups;
+  for (DensityTerm const& term : reconstruction.budget)
+    groups.push_back({term.name, {density_row("bias", "bias", term.bias), density_row("rms", "rms", term.rms)}});
+  return groups;
 }
 
 char const* direction_name(density::AxisDirection direction) {
@@ -88,73 +125,26 @@ void write_density(std::string const& path, Reconstruction const& reconstruction
   file.close();
 }
 
+std::vector<ResultRow> reconstruction_rows(Reconstruction const& reconstruction) {
+  std::vector<ResultRow> rows = density_rows(reconstruction);
+  for (ResultGroup const& group : cause_groups(reconstruction))
+    append_rows(rows, group.rows, "budget_kg_m3." + group.name);
+  return rows;
+}
+
 nlohmann::ordered_json summarize_reconstruction(Reconstruction const& reconstruction) {
-  ValueRange const density = find_range(reconstruction.density);
-  nlohmann::ordered_json json{{"vectors", reconstruction.vectors},
-                              {"columns", reconstruction.grid.columns},
-                              {"rows", reconstruction.grid.rows},
-                              {"determined", density.count},
-                              {"density_kg_m3", range_json(density)},
-                              {"sigma_kg_m3", range_json(find_range(reconstruction.sigma))},
-                              {"sigma_random_kg_m3", range_json(find_range(reconstruction.sigma_random))},
-                              {"reference_density_kg_m3", reconstruction.reference_density},
-                              {"white_noise_gain", reconstruction.white_noise_gain}};
-  if (reconstruction.axisymmetry) {
-    AxisymmetryResult const& flow = *reconstruction.axisymmetry;
-    json["axis"] = {
-        {"direction", direction_name(flow.direction)},       {"position_mm", 1e3 * flow.axis.position},
-        {"sigma_mm", number_or_null(1e3 * flow.axis.sigma)}, {"lambda", flow.lambda},
-        {"asymmetry", number_or_null(flow.asymmetry)},       {"border_gradient", number_or_null(flow.border_gradient)}};
-  }
-  if (!reconstruction.truth.empty()) {
-    DensityErrors const errors = compute_density_errors(reconstruction);
-    json["error_kg_m3"] = {{"count", errors.count},
-                           {"bias", number_or_null(errors.bias)},
-                           {"rms", number_or_null(errors.rms)},
-                           {"largest", number_or_null(errors.largest)},
-                           {"contrast", number_or_null(errors.contrast)},
-                           {"coverage", number_or_null(errors.coverage)}};
-  }
-  for (DensityTerm const& term : reconstruction.budget)
-    json["budget_kg_m3"][term.name] = {{"bias", number_or_null(term.bias)}, {"rms", number_or_null(term.rms)}};
+  nlohmann::ordered_json json{{"vectors", reconstruction.vectors}};
+  json.update(rows_json(reconstruction_rows(reconstruction)));
+  if (reconstruction.axisymmetry) json["axis"]["direction"] = direction_name(reconstruction.axisymmetry->direction);
   return json;
 }
 
 std::string reconstruction_report(Reconstruction const& reconstruction) {
-  ValueRange const density = find_range(reconstruction.density), sigma = find_range(reconstruction.sigma);
-  std::string text = fmt::format("Density at {} of {} x {} nodes: {:.5g} to {:.5g} kg/m^3, median {:.5g} kg/m^3\n",
-                                 density.count, reconstruction.grid.columns, reconstruction.grid.rows, density.least,
-                                 density.largest, density.median);
-  if (sigma.count > 0)
-    text += fmt::format("  standard uncertainty: median {:.3g} kg/m^3, largest {:.3g} kg/m^3\n", sigma.median,
-                        sigma.largest);
-  if (reconstruction.axisymmetry) {
-    AxisymmetryResult const& flow = *reconstruction.axisymmetry;
-    text += fmt::format("  {} axis at {} = {:.4f} mm{}{}\n", direction_name(flow.direction),
-                        flow.direction == density::AxisDirection::vertical ? "x" : "y", 1e3 * flow.axis.position,
-                        std::isfinite(flow.axis.sigma) ? fmt::format(" +- {:.2g} mm", 1e3 * flow.axis.sigma) : "",
-                        std::isfinite(flow.asymmetry)
-                            ? fmt::format("; asymmetry of the gradient {:.1f} %", 100.0 * flow.asymmetry)
-                            : ", of which one side is measured");
-    if (flow.lambda > 0.0) text += fmt::format("  regularisation parameter {:.3g}\n", flow.lambda);
-  }
-  if (reconstruction.white_noise_gain != 1.0)
-    text += fmt::format("  the deconvolution amplifies white noise by {:.2f}\n", reconstruction.white_noise_gain);
-  if (!reconstruction.truth.empty()) {
-    DensityErrors const errors = compute_density_errors(reconstruction);
-    text += fmt::format(
-        "  error against the true density: bias {:.3g}, rms {:.3g}, largest {:.3g} kg/m^3 (the true density varies by "
-        "{:.3g} kg/m^3, standard deviation)\n",
-        errors.bias, errors.rms, errors.largest, errors.contrast);
-    if (std::isfinite(errors.coverage))
-      text +=
-          fmt::format("  {:.1f} % of the errors lie within one standard uncertainty (normal distribution: 68.3 %)\n",
-                      100.0 * errors.coverage);
-  }
-  if (!reconstruction.budget.empty())
-    text += fmt::format("  {:<28} {:>10} {:>10}\n", "causes of the error [kg/m^3]", "bias", "rms");
-  for (DensityTerm const& term : reconstruction.budget)
-    text += fmt::format("  {:<28} {:>10.3g} {:>10.3g}\n", term.name, term.bias, term.rms);
+  std::string text = "Density";
+  if (reconstruction.axisymmetry)
+    text += fmt::format(", symmetric about a {} axis", direction_name(reconstruction.axisymmetry->direction));
+  text += '\n' + rows_text(density_rows(reconstruction));
+  if (!reconstruction.budget.empty()) text += groups_text("cause", cause_groups(reconstruction), 3);
   return text;
 }
 

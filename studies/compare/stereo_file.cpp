@@ -1,7 +1,5 @@
 #include "studies/compare/stereo_file.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cmath>
 #include <functional>
@@ -14,7 +12,6 @@
 #include "render/base/units.h"
 #include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
-#include "studies/case/json_text.h"
 #include "studies/case/result_rows.h"
 #include "studies/compare/stereo_scores.h"
 
@@ -107,37 +104,31 @@ void write_stereo_truth(NodeWriter& nodes, StereoMeasurement const& measurement)
 }
 
 /// @pre the measurement has an alignment
-nlohmann::ordered_json summarize_alignment(StereoMeasurement const& measurement) {
-  stereo::SheetAlignment const& alignment = *measurement.alignment;
-  stereo::ObjectPlane const& plane = alignment.fit.plane;
-  Vec2d const slope_sigma = alignment.fit.slope_sigma;
-  return {{"used", measurement.is_aligned()},
-          {"z_mm", plane.height / unit::mm},
-          {"z_sigma_mm", number_or_null(alignment.fit.height_sigma / unit::mm)},
-          {"slope", {plane.slope.x, plane.slope.y}},
-          {"slope_sigma", {number_or_null(slope_sigma.x), number_or_null(slope_sigma.y)}},
-          {"disparity_px", number_or_null(alignment.disparity_px.front())},
-          {"disparity_sigma_px", number_or_null(alignment.disparity_sigma_px)},
-          {"residual_px", number_or_null(alignment.disparity_px.back())},
-          {"scatter_px", number_or_null(alignment.scatter_px)},
-          {"iterations", alignment.disparity_px.size()},
-          {"vectors", alignment.fit.points},
-          {"outliers", alignment.fit.outliers}};
-}
-
-/// @pre the measurement has an alignment
-std::string describe_alignment(StereoMeasurement const& measurement) {
+std::vector<ResultRow> alignment_rows(StereoMeasurement const& measurement) {
   stereo::SheetAlignment const& alignment = *measurement.alignment;
   stereo::FittedPlane const& fit = alignment.fit;
-  std::string text = fmt::format(
-      "  laser sheet: Z = ({:.4f} +- {:.2g}) mm + ({:.5f} +- {:.2g}) X + ({:.5f} +- {:.2g}) Y\n"
-      "  disparity {:.3g} px (standard uncertainty {:.2g} px), residual {:.3g} px, scatter of the vectors {:.3g} px\n",
-      fit.plane.height / unit::mm, fit.height_sigma / unit::mm, fit.plane.slope.x, fit.slope_sigma.x, fit.plane.slope.y,
-      fit.slope_sigma.y, alignment.disparity_px.front(), alignment.disparity_sigma_px, alignment.disparity_px.back(),
-      alignment.scatter_px);
-  if (measurement.is_aligned()) return text;
-  return text + fmt::format("  the given plane is used: the correction {}\n",
-                            alignment.has_converged() ? "is not significant" : "has not converged");
+  char const* const note = measurement.is_aligned()    ? ""
+                           : alignment.has_converged() ? "not significant: the given sheet is used"
+                                                       : "not converged: the given sheet is used";
+  return {plain_row("z_mm", "laser sheet, Z at X = Y = 0", fit.plane.height / unit::mm, "mm", note),
+          plain_row("z_sigma_mm", "its standard uncertainty", fit.height_sigma / unit::mm, "mm"),
+          plain_row("slope.0", "laser sheet, dZ/dX", fit.plane.slope.x),
+          plain_row("slope.1", "laser sheet, dZ/dY", fit.plane.slope.y),
+          plain_row("slope_sigma.0", "standard uncertainty of dZ/dX", fit.slope_sigma.x),
+          plain_row("slope_sigma.1", "standard uncertainty of dZ/dY", fit.slope_sigma.y),
+          plain_row("disparity_px", "disparity for the given sheet", alignment.disparity_px.front(), "px"),
+          plain_row("disparity_sigma_px", "its standard uncertainty", alignment.disparity_sigma_px, "px"),
+          plain_row("residual_px", "disparity after the correction", alignment.disparity_px.back(), "px"),
+          plain_row("scatter_px", "scatter of the disparities", alignment.scatter_px, "px"),
+          count_row("iterations", "iterations of the sheet", alignment.disparity_px.size()),
+          count_row("vectors", "disparities of the last fit", fit.points),
+          count_row("outliers", "outliers of the last fit", fit.outliers)};
+}
+
+std::vector<ResultRow> given_sheet_rows(stereo::SheetAlignment const& sheet) {
+  return {plain_row("disparity_px", "disparity for the given sheet", sheet.disparity_px.front(), "px"),
+          plain_row("disparity_sigma_px", "its standard uncertainty", sheet.disparity_sigma_px, "px"),
+          plain_row("scatter_px", "scatter of the disparities", sheet.scatter_px, "px")};
 }
 
 void write_stereo_attributes(Hdf5Writer& file, StereoMeasurement const& measurement) {
@@ -208,6 +199,30 @@ double find_median_residual(stereo::StereoField const& field) {
   return quantile(residuals, 0.5);
 }
 
+/// Returns the quantities other than those of a component.
+std::vector<ResultRow> measurement_rows(StereoMeasurement const& measurement) {
+  stereo::StereoField const& field = measurement.field;
+  std::vector<ResultRow> rows{
+      count_row("columns", "columns", field.grid.columns),
+      count_row("rows", "rows", field.grid.rows),
+      count_row("determined", "nodes with a valid displacement", find_component_statistics(field, 0).count),
+      count_row("rejected", "nodes with a large residual", stereo::count_rejected(field)),
+      plain_row("spacing_mm", "spacing", field.grid.spacing / unit::mm, "mm"),
+      plain_row("pixel_size_mm", "size of a pixel on the sheet", measurement.pixel_size / unit::mm, "mm"),
+      plain_row("view_angle_deg", "angle between the views", measurement.view_angle / unit::degree, "deg"),
+      plain_row("residual_px", "residual of the four equations, median", find_median_residual(field), "px"),
+      plain_row("residual_ratio", "residual over its standard uncertainty, rms", compute_residual_ratio(field))};
+  if (measurement.alignment) append_rows(rows, alignment_rows(measurement), "sheet");
+  if (measurement.given_sheet) append_rows(rows, given_sheet_rows(*measurement.given_sheet), "given_sheet");
+  return rows;
+}
+
+/// Returns the errors of u, v and w; none without the true displacement.
+std::vector<ResultGroup> truth_groups(StereoMeasurement const& measurement) {
+  if (measurement.truth.empty()) return {};
+  return error_groups(compute_stereo_errors(measurement), measurement.pixel_size);
+}
+
 }  // namespace
 
 void write_stereo(std::string const& path, StereoMeasurement const& measurement) {
@@ -241,51 +256,26 @@ void write_stereo(std::string const& path, StereoMeasurement const& measurement)
   file.close();
 }
 
+std::vector<ResultRow> stereo_rows(StereoMeasurement const& measurement) {
+  std::vector<ResultRow> rows = measurement_rows(measurement);
+  for (ResultGroup const& group : component_groups(measurement.field)) append_rows(rows, group.rows, group.name);
+  for (ResultGroup const& group : truth_groups(measurement)) append_rows(rows, group.rows, "error." + group.name);
+  return rows;
+}
+
 nlohmann::ordered_json summarize_stereo(StereoMeasurement const& measurement) {
-  using nlohmann::ordered_json;
-  stereo::StereoField const& field = measurement.field;
-  ordered_json json{{"vectors", measurement.vectors},
-                    {"calibrations", measurement.calibrations},
-                    {"columns", field.grid.columns},
-                    {"rows", field.grid.rows},
-                    {"determined", find_component_statistics(field, 0).count},
-                    {"rejected", stereo::count_rejected(field)},
-                    {"spacing_mm", field.grid.spacing / unit::mm},
-                    {"pixel_size_mm", measurement.pixel_size / unit::mm},
-                    {"view_angle_deg", measurement.view_angle / unit::degree},
-                    {"residual_px", number_or_null(find_median_residual(field))},
-                    {"residual_ratio", number_or_null(compute_residual_ratio(field))}};
-  for (ResultGroup const& group : component_groups(field)) json[group.name] = rows_json(group.rows);
-  if (measurement.alignment) json["sheet"] = summarize_alignment(measurement);
-  if (measurement.given_sheet)
-    json["given_sheet"] = {{"disparity_px", number_or_null(measurement.given_sheet->disparity_px.front())},
-                           {"disparity_sigma_px", number_or_null(measurement.given_sheet->disparity_sigma_px)},
-                           {"scatter_px", number_or_null(measurement.given_sheet->scatter_px)}};
-  if (measurement.truth.empty()) return json;
-  for (ResultGroup const& group : error_groups(compute_stereo_errors(measurement), measurement.pixel_size))
-    json["error"][group.name] = rows_json(group.rows);
+  nlohmann::ordered_json json{{"vectors", measurement.vectors}, {"calibrations", measurement.calibrations}};
+  json.update(rows_json(stereo_rows(measurement)));
+  if (measurement.alignment) json["sheet"]["used"] = measurement.is_aligned();
   return json;
 }
 
 std::string stereo_report(StereoMeasurement const& measurement) {
-  stereo::StereoField const& field = measurement.field;
-  std::string text =
-      fmt::format("Displacement at {} of {} x {} nodes, {:.4g} mm apart; {:.1f} degrees between the views\n",
-                  find_component_statistics(field, 0).count, field.grid.columns, field.grid.rows,
-                  field.grid.spacing / unit::mm, measurement.view_angle / unit::degree);
-  text += groups_text("component", component_groups(field));
-  text += fmt::format("  residual of the four equations: median {:.3g} px", find_median_residual(field));
-  if (double const ratio = compute_residual_ratio(field); std::isfinite(ratio))
-    text += fmt::format(", rms {:.2f} times its standard uncertainty", ratio);
-  text += fmt::format("; {} vectors rejected", stereo::count_rejected(field));
-  text += '\n';
-  if (measurement.alignment) text += describe_alignment(measurement);
+  std::string const text = "Displacement in three components\n" + rows_text(measurement_rows(measurement)) +
+                           groups_text("component", component_groups(measurement.field));
   if (measurement.truth.empty()) return text;
-  text += groups_text("error", error_groups(compute_stereo_errors(measurement), measurement.pixel_size));
-  return text + fmt::format(
-                    "  (px of {:.4g} mm on the sheet; coverage: fraction of the errors within one sigma, normal "
-                    "distribution: 0.683)\n",
-                    measurement.pixel_size / unit::mm);
+  return text + groups_text("error", truth_groups(measurement)) +
+         "  (coverage: fraction of the errors within one sigma, normal distribution: 0.683)\n";
 }
 
 }  // namespace gladstone::inline compare

@@ -2,7 +2,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
+#include "studies/case/result_rows.h"
 #include "studies/compare/stereo.h"
 
 namespace gladstone::inline compare {
@@ -12,6 +14,9 @@ namespace gladstone::inline compare {
 /// determined. Tables in docs/file-formats.md.
 /// @throws OutputError; DataError if a source has changed since it was read
 void write_stereo(std::string const& path, StereoMeasurement const& measurement);
+
+/// Returns the quantities of a measurement: those of the field and the laser sheet, then those of each component.
+std::vector<ResultRow> stereo_rows(StereoMeasurement const& measurement);
 
 /// Summarizes a measurement as JSON, the output of --json (docs/file-formats.md).
 nlohmann::ordered_json summarize_stereo(StereoMeasurement const& measurement);

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
-#include "studies/case/json_text.h"
+#include "studies/case/result_rows.h"
 #include "studies/compare/density_table.h"
 
 namespace gladstone::inline compare {
@@ -26,6 +28,43 @@ void write_tomography_attributes(Hdf5Writer& file, Tomography const& result) {
   file.attribute("/", "tv_weight", result.tv_weight);
   file.attribute("/", "residual", result.residual.back());
   if (!result.truth.empty()) file.attribute("/", "relative_error", compute_relative_error(result));
+}
+
+/// Returns the quantities of the volume.
+std::vector<ResultRow> volume_rows(Tomography const& result) {
+  auto const [least, largest] = std::minmax_element(result.density.begin(), result.density.end());
+  Vec3d const centre = find_grid_centre(result.grid);
+  std::array<int, 3> const& nodes = result.grid.nodes;
+  std::vector<ResultRow> rows{
+      count_row("nodes.0", "nodes along x", nodes[0]),
+      count_row("nodes.1", "nodes along y", nodes[1]),
+      count_row("nodes.2", "nodes along z", nodes[2]),
+      plain_row("spacing_mm", "spacing", result.grid.spacing.x / unit::mm, "mm"),
+      plain_row("center_mm.0", "centre of the volume, x", centre.x / unit::mm, "mm"),
+      plain_row("center_mm.1", "centre of the volume, y", centre.y / unit::mm, "mm"),
+      plain_row("center_mm.2", "centre of the volume, z", centre.z / unit::mm, "mm"),
+      plain_row("reference_density_kg_m3", "reference density", result.reference_density, "kg/m^3"),
+      plain_row("density_kg_m3.least", "density, least", *least, "kg/m^3"),
+      plain_row("density_kg_m3.largest", "density, largest", *largest, "kg/m^3"),
+      count_row("iterations", "sweeps over all views", result.residual.size()),
+      plain_row("tv_weight", "strength of the total variation", result.tv_weight),
+      plain_row("residual", "residual of the line integrals", result.residual.back()),
+      plain_row("outside", "line integrals outside of the volume", result.outside, "", "fraction of their squares")};
+  if (!result.truth.empty())
+    rows.push_back(
+        plain_row("relative_error", "relative L2 error of the density difference", compute_relative_error(result)));
+  return rows;
+}
+
+/// Returns the quantities of each view.
+std::vector<ResultGroup> view_groups(Tomography const& result) {
+  std::vector<ResultGroup> groups;
+  for (std::size_t i = 0; i < result.views.size(); ++i)
+    groups.push_back({result.views[i],
+                      {plain_row("angles_deg", "angle", result.angles[i] / unit::degree, "deg"),
+                       count_row("vectors", "vectors", result.vectors[i]),
+                       plain_row("view_residual", "residual", result.view_residual[i])}});
+  return groups;
 }
 
 }  // namespace
@@ -73,45 +112,26 @@ void write_tomography(std::string const& path, Tomography const& result) {
   file.close();
 }
 
+std::vector<ResultRow> tomography_rows(Tomography const& result) {
+  std::vector<ResultRow> rows = volume_rows(result);
+  std::vector<ResultGroup> const views = view_groups(result);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    for (ResultRow row : views[i].rows) {
+      row.key += fmt::format(".{}", i);
+      row.label += " of " + views[i].name;
+      rows.push_back(std::move(row));
+    }
+  return rows;
+}
+
 nlohmann::ordered_json summarize_tomography(Tomography const& result) {
-  auto const [least, largest] = std::minmax_element(result.density.begin(), result.density.end());
-  Vec3d const centre = find_grid_centre(result.grid);
-  std::vector<double> angles = result.angles;
-  for (double& angle : angles) angle /= unit::degree;
-  nlohmann::ordered_json json{{"views", result.views},
-                              {"angles_deg", angles},
-                              {"vectors", result.vectors},
-                              {"nodes", result.grid.nodes},
-                              {"spacing_mm", result.grid.spacing.x / unit::mm},
-                              {"center_mm", {centre.x / unit::mm, centre.y / unit::mm, centre.z / unit::mm}},
-                              {"reference_density_kg_m3", result.reference_density},
-                              {"density_kg_m3", {{"least", *least}, {"largest", *largest}}},
-                              {"iterations", result.residual.size()},
-                              {"tv_weight", result.tv_weight},
-                              {"device", result.device},
-                              {"residual", result.residual.back()},
-                              {"view_residual", result.view_residual},
-                              {"outside", result.outside}};
-  if (!result.truth.empty()) json["relative_error"] = number_or_null(compute_relative_error(result));
+  nlohmann::ordered_json json{{"views", result.views}, {"device", result.device}};
+  json.update(rows_json(tomography_rows(result)));
   return json;
 }
 
 std::string tomography_report(Tomography const& result) {
-  auto const [least, largest] = std::minmax_element(result.density.begin(), result.density.end());
-  Vec3d const centre = find_grid_centre(result.grid);
-  std::string text = fmt::format(
-      "Density at {} x {} x {} nodes, {:.4g} mm apart, from {} views: {:.5g} to {:.5g} kg/m^3\n"
-      "  centre of the volume ({:.6g}, {:.6g}, {:.6g}) mm; residual of the line integrals {:.2f} % after {} "
-      "iterations\n",
-      result.grid.nodes[0], result.grid.nodes[1], result.grid.nodes[2], result.grid.spacing.x / unit::mm,
-      result.views.size(), *least, *largest, centre.x / unit::mm, centre.y / unit::mm, centre.z / unit::mm,
-      100.0 * result.residual.back(), result.residual.size());
-  for (std::size_t i = 0; i < result.views.size(); ++i)
-    text += fmt::format("  {} ({:.4g} deg): {} vectors, residual {:.2f} %\n", result.views[i],
-                        result.angles[i] / unit::degree, result.vectors[i], 100.0 * result.view_residual[i]);
-  if (!result.truth.empty())
-    text += fmt::format("  relative L2 error of the density difference: {:.4f}\n", compute_relative_error(result));
-  return text;
+  return "Density of a volume\n" + rows_text(volume_rows(result)) + groups_text("view", view_groups(result));
 }
 
 }  // namespace gladstone::inline compare

@@ -2,7 +2,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
+#include "studies/case/result_rows.h"
 #include "studies/compare/tomography.h"
 
 namespace gladstone::inline compare {
@@ -12,10 +14,13 @@ namespace gladstone::inline compare {
 /// nodes.
 void write_tomography(std::string const& path, Tomography const& result);
 
+/// Returns the quantities of a reconstruction: those of the volume, then those of each view.
+std::vector<ResultRow> tomography_rows(Tomography const& result);
+
 /// Summarises a reconstruction as JSON.
 nlohmann::ordered_json summarize_tomography(Tomography const& result);
 
-/// Returns a reconstruction's report in words.
+/// Formats the summary as text.
 std::string tomography_report(Tomography const& result);
 
 /// Returns the position of the middle of a grid, which is `center_mm` of a field [m].

@@ -46,10 +46,6 @@ bool holds(Keys const& keys, std::string const& key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-ResultRow plain_row(char const* key, char const* name, double value, char const* unit_name, std::string note = "") {
-  return {.key = key, .label = name, .value = value, .unit = unit_name, .note = std::move(note)};
-}
-
 /// Adds paraxial values of any camera, for the plane of the dots or particles.
 void add_camera_rows(std::vector<ResultRow>& rows, Setup const& setup) {
   double const pixel = setup.pixel_size();

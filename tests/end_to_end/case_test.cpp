@@ -199,7 +199,7 @@ TEST_F(Case, SetOfACorrelationChangesTheCasesOwnSettings) {
 // Each valid vector has a sigma, which the comparison verifies; both components of the vectors count.
 TEST_F(Case, UncertaintiesAreWrittenAndJudged) {
   render("case");
-  EXPECT_THAT(succeed({"correlate", "case", "--device", "cpu"}), ContainsWhole(" 0 masked, "));
+  EXPECT_THAT(succeed({"correlate", "case", "--device", "cpu"}), testing::ContainsRegex(" masked +0\n"));
   EXPECT_THAT(succeed({"compare", "case", "--no-figures"}), HasSubstr("standard uncertainties: "));
   auto const quality = nlohmann::json::parse(read("case/errors.json"))["uncertainty"];
   for (char const* truth : {"window_truth", "deformed_window_truth", "ray_truth"}) {

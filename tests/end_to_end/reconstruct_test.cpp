@@ -123,7 +123,8 @@ TEST_F(ReconstructedDensity, HasTheChosenGaugeMethodAndUncertainty) {
   EXPECT_LT(poisson["sigma_random_kg_m3"]["largest"].get<double>(), 0.2 * excess);
 }
 
-// Reconstruction is linear: the causes add up to the error, in the plane and for a radial density.
+// Reconstruction is linear: the causes add up to the error, in the plane and for a radial density. The table of
+// quantities contains them.
 TEST_F(ReconstructedDensity, HasAnErrorBudgetThatAddsUp) {
   measure();
   for (std::vector<std::string> const& how :
@@ -139,6 +140,10 @@ TEST_F(ReconstructedDensity, HasAnErrorBudgetThatAddsUp) {
     EXPECT_NEAR(budget["total"]["rms"].get<double>(), result["error_kg_m3"]["rms"].get<double>(),
                 0.1 * result["error_kg_m3"]["rms"].get<double>());
     EXPECT_LT(budget["small_angle"]["rms"].get<double>(), budget["cone"]["rms"].get<double>());
+    std::vector<std::string> csv{"reconstruct", "case", "-o", "density.h5", "--no-figures", "--csv"};
+    csv.insert(csv.end(), how.begin(), how.end());
+    EXPECT_THAT(succeed(csv), testing::HasSubstr(fmt::format("\nbudget_kg_m3.total.rms,,rms,{:.17g},kg/m^3,\n",
+                                                             budget["total"]["rms"].get<double>())));
   }
 }
 

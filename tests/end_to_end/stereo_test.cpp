@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -101,11 +103,14 @@ TEST_F(Stereo, MeasuresUniformMotionInThreeComponents) {
 }
 
 // Files with the same cameras as calibrations give the same displacements, and a larger uncertainty. The folder of a
-// case with two cameras may be given instead of its two cases.
+// case with two cameras may be given instead of its two cases. --csv prints the same values as --json.
 TEST_F(Stereo, ReadsTheFolderOfBothCameras) {
   measure(40, "[15.0, -12.0, 10.0]");
   auto of_folder = json_of({"stereo", "case", "-o", "uvw.h5", "--quiet", "--no-figures"});
   EXPECT_EQ(of_folder, combine());
+  EXPECT_THAT(
+      succeed({"stereo", "case", "-o", "uvw.h5", "--quiet", "--no-figures", "--csv"}),
+      testing::HasSubstr(fmt::format("\nw.mean_mm,,mean,{:.17g},mm,\n", of_folder["w"]["mean_mm"].get<double>())));
   expect_error({"stereo", "case/left", "-o", "uvw.h5"}, 2, "wrong_format at left");
   expect_error({"stereo", "case/left/vectors.h5", "-o", "uvw.h5"}, 2, "wrong_format at vectors.h5");
   expect_error({"stereo", "none", "-o", "uvw.h5"}, 2, "wrong_format at none");

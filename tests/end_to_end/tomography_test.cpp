@@ -100,6 +100,9 @@ TEST_F(Tomography, WarnsOfAViewThatContradictsTheOthers) {
   auto const right = reconstruct({"--reference", "left"});
   EXPECT_THAT(warnings_in(right), testing::Not(testing::Contains(testing::StartsWith("unreliable at "))));
   EXPECT_EQ(right["view_residual"].size(), 3u);
+  EXPECT_THAT(succeed(words({"--reference", "left", "--csv"})),
+              testing::HasSubstr(fmt::format("\nview_residual.2,,residual of 2,{:.17g},,\n",
+                                             right["view_residual"][2].get<double>())));
   auto const whole = [](double) { return true; };
   write_vectors("0.csv", "0", whole);
   write_vectors("1.csv", "1", whole, -1.0);

@@ -45,6 +45,12 @@ TEST(ResultRows, AreIntegersAndArraysWhereTheRowsSaySo) {
   EXPECT_EQ(json.dump(), R"({"nodes":[6,5],"spacing":[1.0]})");
 }
 
+TEST(ResultRows, CountsHaveAllDigits) {
+  std::vector<ResultRow> const counts{count_row("vectors", "vectors", 12'345'678)};
+  EXPECT_THAT(rows_text(counts), HasSubstr(" 12345678\n"));
+  EXPECT_EQ(rows_json(counts).dump(), R"({"vectors":12345678})");
+}
+
 // RFC 4180: fields with commas or quotes are quoted, and quotes are doubled.
 TEST(ResultRows, AreCsvWithEveryColumn) {
   std::string const csv = rows_csv(rows());
