@@ -185,7 +185,7 @@ TEST_F(Reports, OfACaseTakeVectorsOfAnotherCode) {
   EXPECT_THAT(read("theirs.html"), testing::Not(HasSubstr("The estimator's standard uncertainty is ")));
 }
 
-TEST_F(Reports, OfPivShowTheSheetAndWhatAStopMakesOfIt) {
+TEST_F(Reports, OfPivShowLayoutAndErrorsAgainstTheFNumber) {
   succeed({"render", GLADSTONE_DATA_DIR "/../studies/cases/piv.toml", "-o", "piv", "--set", "camera.pixels=[96, 96]",
            "--quiet"});
   succeed({"correlate", "piv", "--set", "correlate.window_px=[24]", "--quiet"});

@@ -217,7 +217,7 @@ window_px = [64, 32]
 CaseSetup load_droplets() { return load_case_setup(SetupDocument::from_text(droplets, "piv.toml")); }
 
 // The droplets of the example in docs/piv.md: the sheet agrees with info particles, and states how far they may move.
-TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
+TEST(DesignSheet, OfPivLimitsTheDisplacementBetweenThePulses) {
   CaseSetup const loaded = load_droplets();
   DesignSheet const sheet = piv_sheet(loaded);
   double const pixel = 5e-6 / (105.0 / 645);
