@@ -294,6 +294,17 @@ window_px = [32, 16]
               HasSubstr("| medium.ambient\\_density\\_kg\\_m3 | B | 0 | 0.02 | normal | infinite | 0.00"));
 }
 
+// A bin has at least 50 components of vectors. 64 px have 9 windows of 32 px, hence one bin, which shows no trend.
+TEST_F(Reports, ShowNoReliabilityWithASingleBin) {
+  render("case");
+  succeed({"correlate", "case", "--quiet", "--set", "correlate.uncertainty=correlation_statistics", "--set",
+           "correlate.window_px=[32]"});
+  succeed({"report", "case", "--quiet"});
+  std::string const html = read("case/report.html");
+  EXPECT_THAT(html, HasSubstr("\"estimated uncertainty"));
+  EXPECT_THAT(html, testing::Not(HasSubstr("Does the estimated uncertainty describe the error?")));
+}
+
 // The reports of a case and of a measurement end in the density of gladstone reconstruct, number by number; that of the
 // case contains its error and the causes of the error.
 TEST_F(Reports, HaveTheDensityOfReconstruct) {
