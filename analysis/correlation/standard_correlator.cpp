@@ -240,7 +240,7 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
 
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {
   static std::once_flag once;
-  // otherwise page faults take a sixth of the time of a pass in sequences of pairs
+  // Memory returned to the system causes page faults, which take a sixth of the time of a pass in sequences of pairs.
   std::call_once(once, keep_freed_memory);
   return std::make_unique<StandardCorrelator>(settings);
 }

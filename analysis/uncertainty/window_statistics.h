@@ -148,7 +148,8 @@ struct WindowStatistics {
     return sums;
   }
 
-  /// Performs step n. @param sums  this thread's share of the sums
+  /// Performs step n of a pipeline over the rows of the window: weighs row n, forms the terms of row n - 2, and adds
+  /// the products of the terms of row n - 3. @param sums  this thread's share of the sums
   template <class Pixels>
   GLADSTONE_HD void step(int n, Pixels const& pixels, WindowLevels const& levels, StatisticsSums& sums) const {
     if (n <= side) weigh_row(n, pixels, levels);

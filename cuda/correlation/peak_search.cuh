@@ -208,10 +208,10 @@ __device__ __noinline__ void find_all_peaks(Plane const plane, int radius, Plane
   __syncwarp();
 }
 
-/// Combines the highest maxima of all shares to the peaks of a window, with the result of find_peaks(): the three
-/// highest maxima, unless some of them are close to each other or nearly equally high, in which case the slow search is
-/// used. Called by one full warp.
-/// @param list, found  memory for the slow search
+/// Selects the peaks of a window from the highest maxima of all shares; the result equals that of find_peaks(). These
+/// are the three highest maxima. If two of them are close to each other or nearly equally high, or a share left out a
+/// maximum that could be one of them, all maxima are searched again (find_all_peaks()). Called by one full warp.
+/// @param list, found  memory for find_all_peaks()
 /// @param own  output: the k-th peak in lane k < 3
 /// @return number of peaks
 template <class Plane>

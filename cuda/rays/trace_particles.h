@@ -119,8 +119,8 @@ GLADSTONE_HD AimedRay<double> aimed_ray(ParticlesLaunch const& launch, Sources c
   return ray_to(sources, launch.camera.aim_plane, map, i, at);
 }
 
-/// Maximum weight of a ray in a window of spline nodes, relative to the heaviest of the central and rim rays. PSFs of
-/// heavier rays are added to the image one by one.
+/// Ratio of the maximum weight of a ray in a window of spline nodes to the largest weight of the central ray and the
+/// rim rays [1]. The PSFs of rays with a larger weight are added to the image one by one.
 inline constexpr double heavier_in_window = 4;
 /// Returns the weight of ray k: a ray to the rim for k < rim_rays, the central ray for k = rim_rays.
 GLADSTONE_HD inline double weight_of_rim(ParticlesLaunch const& launch, PulseAim const& aim, int pulse, std::uint64_t i,

@@ -20,7 +20,7 @@ inline constexpr std::uint64_t max_rays_per_share = 16384;
 inline constexpr int most_window_nodes = 88;
 inline constexpr std::size_t most_block_bytes = 96 * 1024;
 
-/// Directions of the rays of a source, and the expected position of their light.
+/// Data of one source for its rays: bundle of rays, and window of the sensor on which their light is expected.
 struct SourceOnDevice {
   std::uint64_t source;                               ///< index of the source in the pattern
   Vec3d centre, a, b, across, by_x, by_y;             ///< target area and its shift, as in AimedBundle

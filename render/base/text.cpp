@@ -27,4 +27,8 @@ std::string excerpt(std::string_view text, std::size_t longest) {
   return std::string(text.substr(0, end)) + "...";
 }
 
+std::string count_text(std::size_t count, std::string const& noun) {
+  return std::to_string(count) + ' ' + noun + (count == 1 ? "" : "s");
+}
+
 }  // namespace gladstone::inline base

@@ -18,4 +18,7 @@ std::string lower_case(std::string_view text);
 /// Shortens a text to `longest` bytes for a message, ending in "..." if it was cut.
 std::string excerpt(std::string_view text, std::size_t longest = 60);
 
+/// Returns a number with a noun in singular or plural: "1 thread", "4 threads".
+std::string count_text(std::size_t count, std::string const& noun);
+
 }  // namespace gladstone::inline base

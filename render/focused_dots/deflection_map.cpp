@@ -133,12 +133,12 @@ DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern
   Bounds<double> const bounds = medium_bounds(scene);
   double const stop = scene.imaging.entrance_pupil / 2, way = way_to(bounds, scene.setup);
   FocusedSetupView const bench = dots.bench();
-  table.way = way;
+  table.mid_plane_fraction = way;
   table.pupil_step = slope_reach * stop;
   table.low = {bounds.low.x, bounds.low.y};
   table.high = {bounds.high.x, bounds.high.y};
   for (int face = 0; face < 2; ++face) {
-    table.face_ways[face] =
+    table.face_fractions[face] =
         ((face == 0 ? bounds.low.z : bounds.high.z) - bench.plane_z) / (bench.lens_z - bench.plane_z);
   }
 

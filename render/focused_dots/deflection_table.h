@@ -170,10 +170,11 @@ struct DeflectionTable {
   SquareLattice straight;  ///< deflections of the rays to the pupil's centre
   SquareLattice sloping;   ///< slopes: derivatives of the deflections with respect to the pupil point, which are small
                            ///< corrections
-  double way = 0;          ///< distance target to mid-plane over distance target to lens [1]
-  double pupil_step = 0;   ///< step in the pupil for the finite differences of the slopes [m]
-  Vec2d low, high;         ///< bounds of the medium in X and Y [m]
-  double face_ways[2]{};   ///< like `way`, for the two faces of the medium normal to Z
+  double mid_plane_fraction = 0;  ///< distance from the target to the medium's mid-plane, over that to the lens [1]
+  double pupil_step = 0;          ///< step in the pupil for the finite differences of the slopes [m]
+  Vec2d low, high;                ///< bounds of the medium in X and Y [m]
+  double face_fractions[2]{};  ///< distances from the target to the two faces of the medium normal to Z, over that to
+                               ///< the lens [1]
 
   /// [rows][columns] of the lattices, as in Deflection; NaN if a ray does not reach the lens; null: no table
   TableVector const* displacements = nullptr;
@@ -210,7 +211,7 @@ struct DeflectionTable {
   /// within `radius` of a point in the pupil.
   GLADSTONE_HD bool covers(Vec2d on_target, double half, Vec2d pupil, double radius) const {
     Vec2d const middle = crossing(on_target, pupil);
-    double const reach = (1 - way) * half + way * radius;
+    double const reach = (1 - mid_plane_fraction) * half + mid_plane_fraction * radius;
     return exists() && straight.covers(middle, reach) && sloping.covers(middle, reach);
   }
   /// Returns true if the medium is not crossed by any straight ray from a point within `half` of a point on the target
@@ -218,7 +219,7 @@ struct DeflectionTable {
   GLADSTONE_HD bool beside(Vec2d on_target, double half, double pupil) const {
     bool left = true, right = true, below = true, above = true;
     for (int face = 0; face < 2; ++face) {  // A cone extends farthest at one of its ends.
-      double const share = face_ways[face], reach = (1 - share) * half + share * pupil;
+      double const share = face_fractions[face], reach = (1 - share) * half + share * pupil;
       Vec2d const middle = (1 - share) * on_target;
       left = left && middle.x + reach < low.x;
       right = right && middle.x - reach > high.x;
@@ -229,7 +230,9 @@ struct DeflectionTable {
   }
   /// Returns the intersection with the mid-plane of the straight ray between a point on the target and one in the pupil
   /// [m].
-  GLADSTONE_HD Vec2d crossing(Vec2d on_target, Vec2d pupil) const { return (1 - way) * on_target + way * pupil; }
+  GLADSTONE_HD Vec2d crossing(Vec2d on_target, Vec2d pupil) const {
+    return (1 - mid_plane_fraction) * on_target + mid_plane_fraction * pupil;
+  }
   GLADSTONE_HD Vec2d displacement(Vec2d q, Vec2d pupil) const {
     return interpolate<Vec2d>(straight.about(q), displacements) +
            interpolate<PupilSlopes>(sloping.about(q), displacement_slopes).at(pupil);
@@ -263,7 +266,7 @@ GLADSTONE_HD void trace_ray_group(Four const& four, FocusedSetupView const& benc
     pupil[i] = straight ? Vec2d{} : (side < 2 ? Vec2d{aside, 0} : Vec2d{0, aside});
     Vec2d const crossing =
         lattice.node(static_cast<int>(node[i] % lattice.columns), static_cast<int>(node[i] / lattice.columns));
-    from[i] = (crossing - table.way * pupil[i]) / (1 - table.way);
+    from[i] = (crossing - table.mid_plane_fraction * pupil[i]) / (1 - table.mid_plane_fraction);
   }
   Deflection found[abreast];
   deflect(bench, medium, from, pupil, found);

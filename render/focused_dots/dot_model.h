@@ -96,7 +96,7 @@ struct DotModel {
   /// the error also increases with the square of that standard deviation over the width of the cone in the image. The
   /// edge radii, corrected by the same rays, add 1e-6 to 2e-6 px.
   GLADSTONE_HD Vec2d error2(CheckErrors const& errors, bool simple_edge = true) const {
-    double const cone_px = 2 * table.way * stop_radius * bench.px_per_metre;
+    double const cone_px = 2 * table.mid_plane_fraction * stop_radius * bench.px_per_metre;
     double const leaves = simple_edge && cone.fine ? 0.015 : 0.04, folds = simple_edge ? 0 : 80 / cone_px;
     auto const left2 = [&](double miss2) { return (leaves * leaves + folds * folds * miss2) * miss2; };
     constexpr double rims2 = 2e-6 * 2e-6;

@@ -109,7 +109,8 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   // The finest length of a closed form is not a grid cell but the length of a wave's whole slope.
   bool const closed_form = scene.medium.grid.nodes[0] <= 1;
   model.cone.fine = closed_form || plan.fineness > 1;
-  double const radius = scene.medium.finest > 0 ? table.way * model.stop_radius / scene.medium.finest : 0;
+  double const radius =
+      scene.medium.finest > 0 ? table.mid_plane_fraction * model.stop_radius / scene.medium.finest : 0;
   make_cone_rule(radius, plan.fineness, closed_form ? 2 : 1, cone_points, cone_directions);
   model.cone.points = cone_points.data();
   model.cone.directions = cone_directions.data();

@@ -106,10 +106,9 @@ void GlassCatalogue::add(std::string_view text, std::string const& catalogue, st
                     "contains no glass (a catalogue in the AGF format has lines NM, CD and LD)");
   }
   if (!out.empty()) {
-    warnings_.push_back(
-        {WarningCode::ignored, fmt::format("{}:{}", file, out[0].fault.line),
-         fmt::format("{} of {} glasses cannot be used and {} ignored: {}", out.size(),
-                     out.size() + content.glasses.size(), out.size() == 1 ? "is" : "are", list_left_out(out))});
+    warnings_.push_back({WarningCode::ignored, fmt::format("{}:{}", file, out[0].fault.line),
+                         fmt::format("{} of {} glasses are invalid and are ignored: {}", out.size(),
+                                     out.size() + content.glasses.size(), list_left_out(out))});
   }
   if (!content.skipped_lines.empty()) {
     warnings_.push_back(

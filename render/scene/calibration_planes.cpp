@@ -61,8 +61,8 @@ void cross_check_calibration(Setup const& setup, SetupTable root, Warnings& warn
     double const z = element.pose().origin.z;
     if (!ahead_of_lens || z - element.thickness() / 2 > nearest) continue;
     calibration.problem("planes_mm",
-                        fmt::format("has the plane Z = {:.6g} mm, at {} at Z = {:.6g} mm or on its camera side (it "
-                                    "must be between all planes and the camera); move one",
+                        fmt::format("has the plane Z = {:.6g} mm, but {} is at Z = {:.6g} mm (it must be between all "
+                                    "planes and the camera); move the plane or the element",
                                     nearest / mm, element_name(setup.elements, i), z / mm));
   }
   double const px = setup.pixel_size(), diameter_px = setup.dot_diameter() / px;

@@ -188,7 +188,8 @@ void build_optics(Setup& setup, SetupTable root, std::vector<ElementTable> const
   warnings.insert(warnings.end(), glasses.warnings().begin(), glasses.warnings().end());
   if (!setup.lens.file.empty()) {
     std::optional<double> object_distance;
-    if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();  // z_a still counts from the first vertex
+    // z_a is not yet converted: it is measured from the first vertex
+    if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();
     build_prescription(setup.lens, lens, glasses, setup.medium.wavelength, object_distance, warnings);
   }
   if (setup.lens.prescription) {

@@ -116,7 +116,7 @@ struct Setup {
   bool has_ideal_particles() const;
   /// Distance from the front principal plane to the plane in focus [m].
   double focus_distance() const;
-  /// Maximum distance of objects from the axis in x or y: ten times their distance from the lens, 84 degrees [m].
+  /// Upper limit of |x| and |y| of objects [m]: 10 z_b, a field angle of 84 degrees.
   double max_off_axis_distance() const { return 10 * z_b(); }
   /// Returns image distance, magnification and entrance pupil near the axis. For prescriptions and cameras behind
   /// other optical elements, these are paraxial values with the sensor in the paraxial image.

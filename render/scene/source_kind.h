@@ -17,8 +17,8 @@ struct SourceKind {
   char const* one;         ///< name of a source in messages
   char const* many;        ///< name of several sources
   char const* seed_table;  ///< table of a setup that contains the seed of the sources' positions
-  /// true: sources printed on a target behind the medium, evenly lit, so that each one has an image; false: sources
-  /// within the medium, of which a laser sheet lights some
+  /// true: sources printed on a target behind the medium, all of which are lit evenly; false: sources within the
+  /// medium, some of which a laser sheet lights
   bool on_target;
   bool in_photons;  ///< the light of the sources is counted in photons, which limits the exposure
 
@@ -31,9 +31,10 @@ struct SourceKind {
   Vec3d (*place)(Scene const& scene, std::size_t source, std::size_t frame);
   /// Returns true if the sensor sees a source in the first frame.
   bool (*in_view)(Scene const& scene, std::size_t source);
-  /// Removes the sources, or their light, whose pixel in the first frame without medium does not meet a condition. If
-  /// the light of a point is divided among many images, all particles remain.
-  /// @return number of sources that remain
+  /// Removes sources by a condition on their pixel in the first frame without medium: a dot is removed, a particle
+  /// loses its light. If optical elements divide the light of a point among many images, all particles remain.
+  /// @param near  returns true for the pixels of sources that remain
+  /// @return number of sources with light
   std::size_t (*retain)(Scene& scene, std::function<bool(Vec2d pixel)> const& near);
 };
 

@@ -10,11 +10,14 @@
 #include "cuda/backend.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
+#include "render/base/text.h"
 #include "render/base/version.h"
 #include "render/render.h"
 
 namespace gladstone::inline cases {
 namespace {
+
+std::string threads_text() { return count_text(static_cast<std::size_t>(thread_count()), "thread"); }
 
 /// Creates the correlator of a GPU; for settings it does not support, that of the CPU, unless only the GPU is allowed.
 std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& settings, bool only_gpu) {
@@ -24,10 +27,10 @@ std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& setting
     throw DeviceError(
         fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto", unsupported));
   if (!missing_on_gpu(settings).empty()) {
-    spdlog::info("correlate.{} is computed on the CPU, {} threads", unsupported, thread_count());
+    spdlog::info("correlate.{} is computed on the CPU, {}", unsupported, threads_text());
     return tracking::make_cpu_correlator(settings);
   }
-  spdlog::info("correlate.{} is estimated on the CPU, {} threads", unsupported, thread_count());
+  spdlog::info("correlate.{} is estimated on the CPU, {}", unsupported, threads_text());
   return cuda::make_correlator(settings);
 }
 
@@ -46,7 +49,7 @@ bool choose_gpu(std::string const& wanted) {
     if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
     instead = " (" + state.text + ")";
   }
-  spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
+  spdlog::info("device: cpu, {}{}", threads_text(), instead);
   return false;
 }
 

@@ -115,7 +115,7 @@ void warn_of_truth(Warnings& warnings, Rendering const& rendering, TruthAccuracy
   if (!(accuracy.rms_px > truth_tolerance_px)) return;
   std::string why;
   if (rendering.table == TableState::by_rays) {
-    // rays were requested or chosen for all dots; no reason to add
+    // The user or the plan selected rays for all dots, which needs no explanation.
   } else if (rendering.table != TableState::made && sources == "dots") {
     why = fmt::format("; the truth is computed from rays only, since {}", to_string(rendering.table));
   } else if (accuracy.above_by_rays > 0 && sources == "dots") {

@@ -40,6 +40,16 @@ ResultRow count_row(std::string key, std::string label, std::size_t count) {
   return {.key = std::move(key), .label = std::move(label), .value = static_cast<double>(count), .whole = true};
 }
 
+char const* rating_text(Margin margin) { return margin == Margin::green ? "ok" : margin_word(margin); }
+
+std::string label_text(ResultRow const& row) { return row.symbol.empty() ? row.label : row.label + ", " + row.symbol; }
+
+std::size_t label_width(std::vector<ResultRow> const& rows) {
+  std::size_t width = 49;
+  for (ResultRow const& row : rows) width = std::max(width, label_text(row).size());
+  return width;
+}
+
 std::string value_text(ResultRow const& row) {
   if (!std::isfinite(row.value)) return std::isnan(row.value) ? "unknown" : "infinite";
   return fmt::format("{:.{}g}{}{}", row.value, row.whole ? 15 : 6, row.unit.empty() ? "" : " ", row.unit);
@@ -53,10 +63,11 @@ void append_rows(std::vector<ResultRow>& rows, std::vector<ResultRow> more, std:
 }
 
 std::string rows_text(std::vector<ResultRow> const& rows) {
+  std::size_t const width = label_width(rows);
   std::string text;
   for (ResultRow const& row : rows) {
-    text += fmt::format("  {:<49} {}", row.symbol.empty() ? row.label : row.label + ", " + row.symbol, value_text(row));
-    if (row.margin != Margin::none) text += fmt::format("  [{}]", margin_word(row.margin));
+    text += fmt::format("  {:<{}} {}", label_text(row), width, value_text(row));
+    if (row.margin != Margin::none) text += fmt::format("  [{}]", rating_text(row.margin));
     text += (row.note.empty() ? "" : "  (" + row.note + ')') + '\n';
   }
   return text;

@@ -15,8 +15,11 @@ enum class Margin {
   violated,
 };
 
-/// Returns "green", "marginal", "violated" or an empty text.
+/// Returns the word of a rating in JSON: "green", "marginal", "violated" or an empty text.
 char const* margin_word(Margin margin);
+
+/// Returns the word of a rating in texts: "ok", "marginal", "violated" or an empty text.
+char const* rating_text(Margin margin);
 
 /// One quantity that a command prints, writes as JSON and as CSV.
 struct ResultRow {
@@ -42,6 +45,12 @@ ResultRow count_row(std::string key, std::string label, std::size_t count);
 
 /// Returns a value with its unit, "infinite" or "unknown".
 std::string value_text(ResultRow const& row);
+
+/// Returns label and symbol: "sensitivity, S".
+std::string label_text(ResultRow const& row);
+
+/// Returns the width of a column of labels, at least 49 characters.
+std::size_t label_width(std::vector<ResultRow> const& rows);
 
 /// Appends rows whose keys are members of an object, such as a camera.
 /// @param object  empty: the keys remain

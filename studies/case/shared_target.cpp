@@ -58,11 +58,11 @@ void share_place(std::vector<CameraCase>& cameras, Setup first) {
 void share_target(std::vector<CameraCase>& cameras) {
   Setup const& first = cameras.front().loaded.setup;
   TargetKind const kind = first.target.kind;
-  if (kind == TargetKind::lattice) return;  // lattices are defined in metres and so already equal
+  if (kind == TargetKind::lattice) return;  // given in metres, so all cameras already have the same one
   if (kind != TargetKind::image) {
     for (CameraCase& one : cameras) share_diameter(one.loaded.document, first);
   }
-  // positions of points are defined in metres and so already equal
+  // Points are given in metres, so all cameras already have the same ones.
   if (kind != TargetKind::points) share_place(cameras, first);
   for (CameraCase& one : cameras) one.loaded.setup.target = read_target_setup(one.loaded.document.reread("target"));
 }

@@ -9,6 +9,7 @@
 
 #include "render/accuracy.h"
 #include "render/base/parallel.h"
+#include "render/base/text.h"
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
@@ -37,9 +38,10 @@ std::string rendering_announcement(Scene const& scene, RenderPlan const& plan, d
   constexpr double least_announced_s = 20;
   if (!(expected_s > least_announced_s)) return {};
   return fmt::format(
-      "rendering {0} {1} will take {4} {2:.0f} s on {3} threads; fewer {1}, a smaller render.rays_per_dot or a larger "
+      "rendering {0} {1} will take {4} {2:.0f} s on {3}; fewer {1}, a smaller render.rays_per_dot or a larger "
       "medium.step_mm takes less time",
-      scene.source_count(), scene.setup.experiment().sources.many, expected_s, thread_count(),
+      scene.source_count(), scene.setup.experiment().sources.many, expected_s,
+      count_text(static_cast<std::size_t>(thread_count()), "thread"),
       plan.adaptive_criteria && !case_kind(scene.setup).expected_rays ? "up to" : "some");
 }
 

@@ -15,6 +15,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
+#include "render/base/text.h"
 #include "render/files/stop_point.h"
 #include "studies/case/json_text.h"
 #include "studies/case/warning_log.h"
@@ -132,7 +133,8 @@ int run_in_workers(Arguments const& arguments, Manifest const& cases, std::strin
     environment.push_back(gpus.empty() ? ""
                                        : "CUDA_VISIBLE_DEVICES=" + gpus[static_cast<std::size_t>(k) % gpus.size()]);
   }
-  spdlog::info("{} workers on {}, {} threads each", jobs, device, std::max(1, thread_count() / jobs));
+  spdlog::info("{} on {}, {} each", count_text(static_cast<std::size_t>(jobs), "worker"), device,
+               count_text(static_cast<std::size_t>(std::max(1, thread_count() / jobs)), "thread"));
   std::map<std::size_t, int> deaths;
   auto const restart = [&](WorkerEnd const& end) {
     std::string const signal = fmt::format("ended by signal {} ({})", end.signal, ::strsignal(end.signal));

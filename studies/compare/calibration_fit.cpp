@@ -157,9 +157,11 @@ class CalibrationFit {
       std::array<int, 2> const by = placement_.moved[plane];
       if (by == std::array<int, 2>{}) continue;
       warn({WarningCode::assumed, file(plane),
-            fmt::format("the middle dot was wrong by {} columns and {} rows and was corrected; the residual is {:.2g} "
-                        "px rms, without the correction {:.2g} px with the principal point at ({:.0f}, {:.0f}) px",
-                        by[0], by[1], pinhole().rms_px, before.rms_px, before.camera.cx(), before.camera.cy())});
+            fmt::format(
+                "the middle dot was found {} columns and {} rows off and was corrected; the residual is {:.2g} px "
+                "rms, and {:.2g} px without the correction, which puts the principal point at ({:.0f}, {:.0f}) "
+                "px",
+                by[0], by[1], pinhole().rms_px, before.rms_px, before.camera.cx(), before.camera.cy())});
     }
     if (Vec2d const drift = placement_.drift; length(drift) > 0) {
       warn({WarningCode::inconsistent, "",

@@ -119,10 +119,11 @@ void warn_of_displacement_gradient(Reconstruction& result, density::GradientMap 
   if (!(gradient > noticeable)) return;
   result.warnings.push_back(
       {WarningCode::low_accuracy, "geometry.z_d_mm",
-       fmt::format("the displacement changes by {:.2g} px per px (rms, without noise): the deflection moves rays to "
-                   "other parts of the medium than Eq. 9 assumes, which in turbulence causes errors of {:.0f} to "
-                   "{:.0f} % of the density's variation, the more the wider the aperture; a smaller Z_D reduces them",
-                   gradient, 100.0 * least_error * gradient, std::min(100.0, 100.0 * largest_error * gradient))});
+       fmt::format(
+           "the displacement changes by {:.2g} px per px (rms, without noise): rays cross other parts of the medium "
+           "than Eq. 9 assumes; in turbulence this causes errors of {:.0f} to {:.0f} % of the density's "
+           "variation, and the widest apertures have the largest; reduce Z_D",
+           gradient, 100.0 * least_error * gradient, std::min(100.0, 100.0 * largest_error * gradient))});
 }
 
 }  // namespace gladstone::inline compare

@@ -52,8 +52,8 @@ void require_same_elements(CaseSetup const& of_case, std::string const& place, s
   if (own == calibrated) return;
   throw DataError(
       ErrorCode::inconsistent, calibration,
-      fmt::format("was made through {} optical elements, but {} looks through {}, which displaces its lines of "
-                  "sight; calibrate through the same windows and other elements",
+      fmt::format("was made through {} optical elements, but the camera of {} looks through {} (elements displace "
+                  "the lines of sight); calibrate through the same elements",
                   calibrated, place, own));
 }
 

@@ -157,7 +157,7 @@ PropagatedResult first_order(std::string key, GradientMeasurement<double> const&
 
 double coverage_factor(double degrees_of_freedom) {
   if (!(degrees_of_freedom < 1e4)) return 2;
-  double low = 1.9, high = 20;  // interval that contains the factor, which is 13.97 for one degree of freedom
+  double low = 1.9, high = 20;  // bounds of the factor: 2 for infinitely many degrees of freedom, 13.97 for one
   while (high - low > 1e-9) {
     double const middle = (low + high) / 2;
     (student_coverage(middle, degrees_of_freedom) < covered ? low : high) = middle;

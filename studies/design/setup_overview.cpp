@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "render/base/parallel.h"
+#include "render/base/text.h"
 #include "render/base/units.h"
 #include "render/method.h"
 #include "render/scene/build_camera.h"
@@ -190,7 +191,7 @@ std::string cost_text(RenderCost const& cost) {
           : fmt::format("{}{:.6g} rays per source", cost.rays_are_largest ? "up to " : "", cost.rays_per_source);
   text += fmt::format("  {:<50}{}, {}\n", "method", to_string(cost.method), rays);
   if (std::isfinite(cost.processor_seconds)) {
-    std::string const threads = thread_count() == 1 ? "1 thread" : fmt::format("{} threads", thread_count());
+    std::string const threads = count_text(static_cast<std::size_t>(thread_count()), "thread");
     bool const expected = cost.expected_rays < cost.rays_per_source;
     text += fmt::format("  {:<50}{}{} s{} on {} of a CPU\n", "time",
                         cost.rays_are_largest && !expected ? "up to " : "about ", time_text(cost.seconds()),

@@ -32,11 +32,11 @@ std::string sheet_text(DesignSheet const& sheet) {
   };
   std::stable_sort(rows.begin(), rows.end(),
                    [&](ResultRow const& a, ResultRow const& b) { return urgency(a) < urgency(b); });
+  std::size_t const width = label_width(rows);
   std::string text;
   for (ResultRow const& row : rows) {
-    text +=
-        fmt::format("  {:<4}{:<49} {:<28}{}\n", row.id, row.symbol.empty() ? row.label : row.label + ", " + row.symbol,
-                    value_text(row), margin_word(row.margin));
+    text += fmt::format("  {:<4}{:<{}} {:<28}{}\n", row.id, label_text(row), width, value_text(row),
+                        rating_text(row.margin));
     text += fmt::format("      = {}   [{}]{}{}\n", row.formula, row.source, row.note.empty() ? "" : "; ", row.note);
   }
   return text;

@@ -117,7 +117,8 @@ void add_errors(SimulatedDesign& bench, Repeats const& repeats, DesignPoint<doub
   std::vector<Vec2d> const counts = mean_of(repeats.error);
   PredictedBlur const blur = predicted_blur(*repeats.setup, formulas, repeats.place);
   bench.predicted_bias_px = compute_rms(blur.whole_px, counts);
-  // window plus estimator; only the part common to all dot patterns is assigned to the window below
+  // Add the terms of window and estimator: the part of the sum that all dot patterns have in common is the window's
+  // bias.
   std::vector<std::vector<Vec2d>> window;
   for (std::size_t k = 0; k < repeats.error.size(); ++k) {
     window.push_back(sum_of(term_of(repeats, k, "window"), term_of(repeats, k, "estimator"), 1));

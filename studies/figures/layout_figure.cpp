@@ -175,7 +175,7 @@ Figure make_layout_figure(DesignPoint<double> const& bench) {
   return make_layout(
       l, {fmt::format("Layout: f = {:.5g} mm, f/{:.4g}, M = {:.4g}", bench.focal_length / mm, bench.f_number,
                       bench.magnification()),
-          fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm),
+          fmt::format("field of view {:.4g} mm", 2 * l.dots_half / mm),
           fmt::format("medium: view {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm)});
 }
 
@@ -208,7 +208,7 @@ Figure make_camera_layout_figure(Setup const& setup) {
   return make_layout(
       l, {fmt::format("Layout along the camera's axis: f/{:.4g}, M = {:.4g}{}", setup.lens.f_number,
                       setup.imaging().magnification, l.sheet_half_thickness > 0 ? ", sheet drawn across the axis" : ""),
-          fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
+          fmt::format("field of view {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
 Figure make_piv_layout_figure(Setup const& setup) {
@@ -216,7 +216,7 @@ Figure make_piv_layout_figure(Setup const& setup) {
   LaserSetup const& laser = setup.piv->laser;
   return make_layout(l, {fmt::format("Layout: f/{:.4g}, M = {:.4g}, sheet {:.4g} mm thick", setup.lens.f_number,
                                      setup.imaging().magnification, laser.thickness / mm),
-                         fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
+                         fmt::format("field of view {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
 }  // namespace gladstone::inline figures

@@ -176,14 +176,20 @@ Panel make_spots(FieldAnalysis const& field, Box const& box) {
       reach = std::max({reach, std::abs(p.x - point.centroid.x), std::abs(p.y - point.centroid.y)});
   }
   double const apart = 2.4 * reach * 1e6;
-  Panel panel{.box = box, .equal_scales = true};
-  panel.x = {"spot diagrams about their centroids [µm]", -apart / 2,
-             apart * (static_cast<double>(field.points.size()) - 0.5)};
+  // The panel has the proportions of its axes, so that labels are placed above the spots.
+  auto const count = static_cast<double>(field.points.size());
+  double const side = std::min((box.right - box.left) / count, box.bottom - box.top);
+  double const x = (box.left + box.right) / 2, y = (box.top + box.bottom) / 2;
+  Panel panel{.box = {x - count * side / 2, x + count * side / 2, y - side / 2, y + side / 2}, .equal_scales = true};
+  panel.x = {"spot diagrams about their centroids [µm]", -apart / 2, apart * (count - 0.5)};
   panel.y = {.low = -apart / 2, .high = apart / 2};
-  panel.legend = {LegendPlace::above, box.top - 18, true};
   for (std::size_t i = 0; i < field.points.size(); ++i) {
     FieldPoint const& point = field.points[i];
-    Layer layer{Layer::Kind::points, {{}, {}}, house_colour(i), fmt::format("{:.3g}°", point.angle / unit::degree)};
+    std::string const angle = fmt::format("{:.3g}°", point.angle / unit::degree);
+    panel.labels.push_back({angle, apart * static_cast<double>(i), apart / 2});
+    panel.labels.back().down_px = -10;
+    panel.labels.back().colour = house_colour(i);
+    Layer layer{Layer::Kind::points, {{}, {}}, house_colour(i), angle};
     layer.marker = -1;
     for (Vec2d const p : point.spot) {
       layer.columns[0].push_back((p.x - point.centroid.x) * 1e6 + apart * static_cast<double>(i));

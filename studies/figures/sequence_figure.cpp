@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "render/base/contracts.h"
+#include "render/base/text.h"
 #include "studies/figures/map_panels.h"
 
 namespace gladstone::inline figures {
@@ -27,7 +28,8 @@ Figure make_sequence_figure(SequenceMoments const& moments) {
     return next < position.size() ? position[next].*axis - position[0].*axis : 1.0;
   };
   MapFigure figure;
-  figure.title = fmt::format("Mean and standard deviation of the displacement over {} pairs", moments.samples);
+  figure.title =
+      fmt::format("Mean and standard deviation of the displacement over {}", count_text(moments.samples, "pair"));
   figure.axes = {moments.position_px[0].x, columns > 1 ? step(1, &Vec2d::x) : 1.0, moments.position_px[0].y,
                  step(columns, &Vec2d::y)};
   for (auto const& [name, component] : {std::pair("u", &Vec2d::x), std::pair("v", &Vec2d::y)}) {

@@ -64,6 +64,13 @@ std::string axis_title(std::string const& key) {
   return name + unit_text;
 }
 
+std::string axis_value_text(std::string const& title, std::string const& label) {
+  auto const bracket = title.find(" [");
+  if (bracket == std::string::npos) return title + " = " + label;
+  std::string const unit = title.substr(bracket + 2, title.size() - bracket - 3);
+  return fmt::format("{} = {} {}", title.substr(0, bracket), label, unit);
+}
+
 FigureAxis figure_axis(StudyAxis const& axis, std::size_t most) {
   GLADSTONE_EXPECTS(most > 1);
   std::size_t const count = axis.labels.size();

@@ -10,6 +10,9 @@ namespace gladstone::inline figures {
 /// Returns the title of an axis, e.g. "focal length [mm]" for "lens.focal_length_mm".
 std::string axis_title(std::string const& key);
 
+/// Returns a value with the name and unit of its axis: "Z_D = 250 mm" for the title "Z_D [mm]" and the label "250".
+std::string axis_value_text(std::string const& title, std::string const& label);
+
 /// An axis of a study as drawn in a figure: each position represents one value, or a bin of values if there are many.
 struct FigureAxis {
   std::string title;

@@ -116,7 +116,7 @@ class BudgetFigure {
       if (largest > smallest_share * high_) {
         shown_.push_back(t);
       } else {
-        nothing_ += (nothing_.empty() ? "" : ", ") + spaced(panels_.front()[t].name);
+        terms_below_axis_ += (terms_below_axis_.empty() ? "" : ", ") + spaced(panels_.front()[t].name);
       }
     }
     width_ = std::max(560.0, static_cast<double>(axis_.size()) * (static_cast<double>(shown_.size()) * 9.0 + 14.0));
@@ -128,7 +128,7 @@ class BudgetFigure {
                        !only_repeats_differ_ ? "medians of the cases"
                        : repeats_ > 1        ? fmt::format("root mean square over {} repeats", repeats_)
                                              : std::string("single cases"),
-                       nothing_.empty() ? "" : "; below the axis: " + nothing_);
+                       terms_below_axis_.empty() ? "" : "; below the axis: " + terms_below_axis_);
   }
 
   /// @param from  upper end of the panel [px]
@@ -172,7 +172,7 @@ class BudgetFigure {
   std::vector<CurveChoice> choices_ = curves_over(cells_, axis_index_, 3);
   std::vector<std::vector<Term>> panels_;  ///< terms of each curve
   std::vector<std::size_t> shown_;         ///< indices of the terms with bars
-  std::string nothing_;                    ///< names of the other terms
+  std::string terms_below_axis_;           ///< names of the other terms, which are too small to be shown
   bool only_repeats_differ_ = true;
   std::size_t repeats_ = 0;                                          ///< largest number of cases of a value
   double low_ = std::numeric_limits<double>::infinity(), high_ = 0;  ///< range of the values [px]

@@ -1,7 +1,5 @@
 #include "studies/figures/study_cells.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -9,13 +7,9 @@
 namespace gladstone::inline figures {
 namespace {
 
-/// Returns the name of a position, e.g. "Z_D 250 mm" for an axis titled "Z_D [mm]"; for categories, the label.
+/// Returns the name of a position, e.g. "Z_D = 250 mm"; for categories, the label.
 std::string place_name(FigureAxis const& axis, std::size_t place) {
-  if (!axis.numeric) return axis.label[place];
-  auto const bracket = axis.title.find(" [");
-  if (bracket == std::string::npos) return axis.title + ' ' + axis.label[place];
-  std::string const unit = axis.title.substr(bracket + 2, axis.title.size() - bracket - 3);
-  return fmt::format("{} {} {}", axis.title.substr(0, bracket), axis.label[place], unit);
+  return axis.numeric ? axis_value_text(axis.title, axis.label[place]) : axis.label[place];
 }
 
 }  // namespace

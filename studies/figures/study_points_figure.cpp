@@ -25,7 +25,7 @@ Axis make_measure_axis(std::string const& label, std::vector<double> const& valu
 std::string describe_case(StudyTable const& table, StudyRow const& row) {
   std::string text = fmt::format("case {}", row.index);
   for (std::size_t k = 0; k < table.axes.size(); ++k)
-    text += fmt::format("\n{}: {}", axis_title(table.axes[k].key), table.axes[k].labels[row.value[k]]);
+    text += '\n' + axis_value_text(axis_title(table.axes[k].key), table.axes[k].labels[row.value[k]]);
   return text;
 }
 

@@ -43,12 +43,12 @@ void add_maps(CaseView& view) {
   for (BudgetStage const& cause : budget_differences(all)) view.add_map("cause: " + cause.name, cause.displacement_px);
 }
 
-/// Returns the chart of rms errors in bins of equal count of the estimated uncertainty; nullopt without bins.
+/// Returns the chart of rms errors in bins of equal count of the estimated uncertainty; nullopt below two bins.
 std::optional<Chart> reliability_chart(Comparison const& all) {
   if (all.measured.sigma_px.empty()) return std::nullopt;
   std::vector<UncertaintyBin> const bins =
       uncertainty_bins(all.measured.displacement_px, all.recorded().displacement_px, all.measured.sigma_px, all.mask);
-  if (bins.empty()) return std::nullopt;
+  if (bins.size() < 2) return std::nullopt;
   return Chart{"reliability",
                "Does the estimated uncertainty describe the error?",
                fmt::format("In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and "

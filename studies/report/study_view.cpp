@@ -49,8 +49,8 @@ std::string StudyView::title(StudyRow const& row) const {
   std::string text;
   for (std::size_t k = 0; k < table.axes.size(); ++k) {
     if (table.axes[k].labels.size() < 2) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", axis_title(table.axes[k].key),
-                        table.axes[k].labels[row.value[k]]);
+    text +=
+        (text.empty() ? "" : ", ") + axis_value_text(axis_title(table.axes[k].key), table.axes[k].labels[row.value[k]]);
   }
   return text.empty() ? fmt::format("case {}", row.index) : text;
 }

@@ -45,7 +45,7 @@ TEST(UncertaintyCombination, IsReadAsItIsWritten) {
 // A method without weight is ignored, whether it has a value or not. A method with a weight but without a value is
 // omitted, and the other weights are scaled up: 1 + (2 3 + 1 9) (4/3) without the second term, whose weight is a
 // quarter of the sum.
-TEST(UncertaintyCombination, KnowsWhatItsPartsKnow) {
+TEST(UncertaintyCombination, OmitsMethodsWithoutWeightOrValue) {
   UncertaintyCombination const combination{1.0, {{"one", 2.0}, {"other", 0.0}}};
   double const nan = std::nan(""), with[] = {3.0, nan}, without[] = {nan, 3.0};
   EXPECT_EQ(combination.log_sigma(with), 7.0);

@@ -344,7 +344,7 @@ TEST(MultiPass, KeepsTheAmplitudeOfASineOfFourWindows) {
 // A wave of four windows with an amplitude of 1.5 px: at the edge the predictor is extrapolated from the interior, so
 // that the increments of correct vectors differ from those of their neighbours. Replacement must not increase the error
 // by more than chance does: 3 % of the rms error (29 % without the test of the sums), and no new gross errors.
-TEST(MultiPass, LosesNothingByReplacingAtTheRimOfASine) {
+TEST(MultiPass, ReplacementDoesNotDegradeVectorsAtTheEdgeOfASine) {
   auto const truth = [](Vec2d p) {
     return Vec2d{1.5 * std::sin(2.0 * pi * p.y / 64.0), 1.5 * std::sin(2.0 * pi * p.x / 64.0)};
   };

@@ -91,7 +91,7 @@ TEST(Ensemble, OfSeveralPassesFollowsTheFrames) {
 }
 
 // A window that is masked in one pair is measured from the others.
-TEST(Ensemble, TakesWhatEachPairHas) {
+TEST(Ensemble, MeasuresMaskedWindowsFromTheOtherPairs) {
   PairSequence const whole = sequence_of(4, {});
   PairSequence const holed{4, [&](std::size_t k) {
                              HostFrames const frames = whole.frames(k);

@@ -92,7 +92,7 @@ TEST(IntensityMask, LeavesOutWhatIsBrightInEitherFrame) {
 
 // A Gaussian average of standard deviation sigma transmits exp(-2 pi^2 sigma^2/L^2) of a wave of length L; the
 // high-pass filter leaves the remainder. OpenCV's kernel is truncated at four sigma, exp(-8) = 3e-4, and sampled.
-TEST(HighPass, LeavesOfAWaveWhatTheGaussianTakes) {
+TEST(HighPass, PassesOneMinusTheGaussianTransfer) {
   for (double const length : {16.0, 64.0}) {
     Image<double> const wave =
         picture_of(128, [&](int i, int) { return 100.0 + 50.0 * std::sin(2.0 * pi * i / length); });
@@ -154,7 +154,7 @@ double contrast_of(Image<double> const& frame, int first, int end) {
 
 // One half has an eighth of the light of the other: afterwards its contrast is at least twice that fraction of the
 // contrast of the other.
-TEST(LocalContrast, BringsUpWhatIsFaint) {
+TEST(LocalContrast, AmplifiesTheFaintHalf) {
   ParticlePair pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
   for (int j = 0; j < 128; ++j)
     for (int i = 64; i < 128; ++i) pair.flow(i, j) /= 8.0;

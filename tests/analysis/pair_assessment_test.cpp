@@ -328,7 +328,7 @@ TEST(OutsideWindows, AreNotCalledMasked) {
 
 // A displacement of 28 px to the right, and a mask 60 px wide in the middle of frame A only: windows on the mask are
 // masked, those at the edge have left the frames.
-TEST(OutsideWindows, AreToldFromMaskedOnes) {
+TEST(OutsideWindows, AreDistinguishedFromMaskedOnes) {
   ParticlePair pair = render_particle_pair({.columns = 256, .rows = 256}, everywhere(28.0, 0.0));
   double const nan = std::numeric_limits<double>::quiet_NaN();
   for (int j = 0; j < 256; ++j)

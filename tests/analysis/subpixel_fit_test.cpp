@@ -37,7 +37,7 @@ TEST(Gauss2d, IsExactForTiltedGaussians) {
   EXPECT_NEAR(fit_gauss3(patch).x, 0.31 + 0.3 * -0.27 / 0.7, 1e-12);
 }
 
-TEST(Gauss2d, LeavesWhatIsNoPeakToThreePoints) {
+TEST(Gauss2d, UsesThreePointsIfThePatchIsNoPeak) {
   PeakPatch patch = gaussian_patch(0.2, 0.1, 0.7, 0.0, 0.4);
   patch.value[0][0] = -0.1;
   EXPECT_EQ(fit_gauss2d(patch).x, fit_gauss3(patch).x);

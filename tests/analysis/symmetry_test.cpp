@@ -117,7 +117,7 @@ TEST(Symmetry, HoldsForPassesOfAPivPairAndMorePassesOfTheLastWindow) {
 
 // A grid is symmetric: as many pixels before its first window as behind its last one, all windows inside, and no space
 // for another window. A single window cannot always be centred on whole pixels.
-TEST(CentredGrid, LeavesAsMuchOnEitherSide) {
+TEST(CentredGrid, HasEqualMarginsOnBothSides) {
   for (int const window : {8, 16, 20, 24, 32, 64})
     for (double const overlap : {0.0, 0.3, 0.5, 0.6, 0.75, 0.9})
       for (int columns = window; columns < 4 * window; ++columns)

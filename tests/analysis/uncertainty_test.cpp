@@ -99,7 +99,7 @@ TEST(UncertaintyBins, FollowTheErrors) {
 
 // Half of all normal errors lie within 0.67 sigma; docs/estimators.md has the results of each method on 1024 px. For
 // about 290 disjoint windows 0.68 scatters by 0.02 per component and seed.
-TEST(Uncertainty, SaysWhereItIsTooSmall) {
+TEST(Uncertainty, HasACaveatForMethodsWithTooSmallEstimates) {
   CorrelationSettings settings;
   EXPECT_EQ(uncertainty_caveat(settings), "");  // no uncertainty is estimated
   settings.uncertainty = "correlation_statistics";

@@ -267,7 +267,7 @@ TEST_F(VectorFiles, OtherProgramsFilesAreTheSameVectors) {
   }
 }
 
-TEST_F(VectorFiles, CodesOfOtherProgramsAreTheirs) {
+TEST_F(VectorFiles, StatusCodesOfOtherProgramsAreConverted) {
   using enum VectorStatus;
   auto const status = [&](std::string const& name, std::string const& text) {
     return read_vectors(write(name, text)).field.status;
@@ -484,7 +484,7 @@ TEST_F(VectorFiles, BrokenTextIsRefusedAtItsLine) {
   EXPECT_THAT([&] { read_vectors(in_folder("absent.h5")); }, ThrowsDataError(ErrorCode::missing_file, "absent.h5"));
 }
 
-TEST(VectorConventions, AreSaidAsTheyAreTold) {
+TEST(VectorConventions, AreParsedAndDescribedInTheSameWords) {
   VectorConventions const told =
       parse_conventions("y-up, v-up,offset=-0.5,frames-exchanged,axes-exchanged,px=0.0614,px/frame=6.14");
   EXPECT_EQ(parse_conventions("swapped"), parse_conventions("frames-exchanged"));

@@ -101,13 +101,13 @@ TEST(ScreenVectors, MarksImpossibleDisplacementsInvalidAndKeepsTheirPlaces) {
   EXPECT_EQ(field.status[5], VectorStatus::masked);
 }
 
-TEST(ScreenVectors, AddsTheOffsetThatWasTold) {
+TEST(ScreenVectors, AddsTheSpecifiedOffset) {
   DisplacementField field = lattice();
   for (Vec2d& p : field.position_px) p += Vec2d{1000.0, 1000.0};
   EXPECT_EQ(screen_vectors(field, -1000.0, columns, rows).all(), 0u);
 }
 
-TEST(ScreenVectors, SaysWhereTheyAreWhenNoneIsLeft) {
+TEST(ScreenVectors, ReportsPositionsIfAllVectorsAreRejected) {
   DisplacementField field = lattice();
   for (Vec2d& p : field.position_px) p = 100.0 * p;
   field.position_px[0].x = nan;

@@ -67,6 +67,25 @@ INSTANTIATE_TEST_SUITE_P(Rows, Adding, testing::Range(std::size_t{0}, rows().siz
                            return name;
                          });
 
+// A new fuzz target touches its row in CMakeLists.txt, and has a corpus of files.
+TEST(FuzzTargets, HaveARowAndACorpus) {
+  fs::path const folder = fs::path(GLADSTONE_SOURCE_DIR) / "tests/fuzz";
+  std::ifstream in(folder / "CMakeLists.txt");
+  std::string const text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::set<std::string> rows, sources, corpora;
+  std::regex const row("gladstone_fuzz_target\\((\\w+) [^)]+\\)\n");
+  for (std::sregex_iterator match(text.begin(), text.end(), row), end; match != end; ++match)
+    rows.insert(match->str(1));
+  for (auto const& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".cpp") sources.insert(entry.path().stem().string());
+  }
+  for (char const* const shared : {"input", "replay"}) sources.erase(shared);
+  for (auto const& entry : fs::directory_iterator(folder / "corpus")) corpora.insert(entry.path().filename().string());
+  EXPECT_GE(rows.size(), 15U) << "the expression no longer finds the targets";
+  EXPECT_EQ(rows, sources);
+  EXPECT_EQ(rows, corpora);
+}
+
 // A new figure touches the command or report that passes it to draw_figure: at most three of them.
 TEST(Figures, AreNamedByThoseThatDrawThem) {
   std::size_t figures = 0;

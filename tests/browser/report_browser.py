@@ -99,7 +99,7 @@ def check_choices(driver):
 
 
 def check_curves(driver, cases):
-    """The points of the curves are root mean squares over the repeats in study.csv, rounded by 5e-7 to the seven digits of figures."""
+    """Each point of a curve is the root mean square over the repeats in study.csv, rounded to seven digits (5e-7)."""
     data = json.loads(driver.execute_script("return document.getElementById('data').textContent"))
     figure = next(chart["figures"] for chart in data["charts"] if chart["chart"] == "curves")[0]["figure"]
     drawn = [layer["columns"][1] for layer in figure["panels"][0]["layers"] if layer["kind"] == "errors"]

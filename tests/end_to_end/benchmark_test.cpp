@@ -62,7 +62,7 @@ TEST_F(Benchmark, ScoresTheVectorsOfAnyCode) {
   EXPECT_THAT(read("b/benchmark.html"), testing::HasSubstr("vortex"));
 }
 
-TEST_F(Benchmark, TellsWhatSigmaIsWorth) {
+TEST_F(Benchmark, ReportsTheCoverageOfTheUncertainty) {
   auto const found = json_of({"benchmark", "-o", "b", "--cases", "noise_5", "--estimators", "default"});
   bool seen = false;
   for (auto const& row : found["uncertainty"]) {

@@ -11,7 +11,7 @@ using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 using testing::UnorderedElementsAreArray;
 
-/// Contents of a case, and their reproducibility bit by bit (interface.md, Files and Repeatability).
+/// Files of a case, which are equal to the bit if the case is rendered again.
 using Case = ProgramFixture;
 
 std::vector<std::string> keys(nlohmann::json const& object) {

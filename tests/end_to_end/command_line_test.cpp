@@ -97,7 +97,7 @@ TEST_F(CommandLine, VersionTellsTheSameAsJson) {
   }
 }
 
-TEST_F(CommandLine, InfoSaysWhatItsKindsTake) {
+TEST_F(CommandLine, InfoRejectsArgumentsThatAKindLacks) {
   expect_error({"info", "image", "a.tif", "--x", "1"}, 2, "arguments at --x");
   expect_error({"info", "image"}, 2, "arguments at info image");
 }

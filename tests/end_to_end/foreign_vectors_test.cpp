@@ -217,7 +217,7 @@ TEST_F(ForeignVectors, AreRefusedWhereNoneLiesInTheImage) {
 
 // Pseudo-random displacements as large as the truth follow it in no reading. A shift of positions by 21 px to the right
 // is reported.
-TEST_F(ForeignVectors, ThatFitNoConventionAreRefusedUnlessTold) {
+TEST_F(ForeignVectors, FittingNoConventionAreRefusedUnlessSpecified) {
   write_changed("random.csv", [](std::size_t i, Vec2d&, Vec2d& d) {
     d = {0.5 * std::sin(1e4 * std::sin(static_cast<double>(i + 1))),
          0.5 * std::cos(1e4 * std::sin(2.0 + static_cast<double>(i)))};

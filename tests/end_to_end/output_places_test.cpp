@@ -87,7 +87,7 @@ TEST_F(Places, ALiveRunOfAnotherContainerIsLeftAloneAndADeadOneClearedAway) {
 }
 
 // An existing folder is neither moved nor replaced.
-TEST_F(Places, TheFolderThatAShellStandsIn) {
+TEST_F(Places, TheWorkingDirectoryOfAShellIsKept) {
   fs::create_directory(in("here"));
   struct stat before {};
   struct stat after {};
@@ -135,7 +135,7 @@ TEST_F(Places, AMountPoint) {
 }
 
 // State after a rendering that was killed after the first of its moves.
-TEST_F(Places, ACommandThatReadsACaseCompletesWhatWasBrokenOffThere) {
+TEST_F(Places, ACommandThatReadsACaseCompletesAnInterruptedReplacement) {
   render("case");
   render("fresh", {"--set", "target.seed=8"});
   pid_t const child = ::fork();

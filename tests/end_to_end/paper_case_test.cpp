@@ -22,7 +22,7 @@ class PaperCase : public ProgramFixture {};
 // scatters between samples: with a flatness of 7 by 0.23 sqrt(7 / 10,000) = 0.6 % of the ratio; three standard
 // deviations and the 0.1 % scatter of 64 rays give 2 %. The deficit of the correlation, 0.03, scatters by a few percent
 // of itself, including the edges by less than 0.005.
-TEST_F(PaperCase, IsWhatReadmeSays) {
+TEST_F(PaperCase, HasTheErrorsAndCorrelationsOfTheReadme) {
   for (Said const& said : {Said{"kepeak", 0.0736, 0.0621, 0.973}, Said{"late", 0.0051, 0.0043, 0.979}}) {
     std::string const data = GLADSTONE_DATA_DIR;
     render("case",

@@ -185,7 +185,7 @@ TEST_F(Reports, OfACaseTakeVectorsOfAnotherCode) {
   EXPECT_THAT(read("theirs.html"), testing::Not(HasSubstr("The estimator's standard uncertainty is ")));
 }
 
-TEST_F(Reports, OfPivShowTheSheetAndWhatAStopMakesOfIt) {
+TEST_F(Reports, OfPivShowLayoutAndErrorsAgainstTheFNumber) {
   succeed({"render", GLADSTONE_DATA_DIR "/../studies/cases/piv.toml", "-o", "piv", "--set", "camera.pixels=[96, 96]",
            "--quiet"});
   succeed({"correlate", "piv", "--set", "correlate.window_px=[24]", "--quiet"});
@@ -292,6 +292,17 @@ window_px = [32, 16]
   EXPECT_THAT(read("text/vacuum.md"), testing::Not(HasSubstr("nan")));
   EXPECT_THAT(read("text/vacuum.md"),
               HasSubstr("| medium.ambient\\_density\\_kg\\_m3 | B | 0 | 0.02 | normal | infinite | 0.00"));
+}
+
+// A bin has at least 50 components of vectors. 64 px have 9 windows of 32 px, hence one bin, which shows no trend.
+TEST_F(Reports, ShowNoReliabilityWithASingleBin) {
+  render("case");
+  succeed({"correlate", "case", "--quiet", "--set", "correlate.uncertainty=correlation_statistics", "--set",
+           "correlate.window_px=[32]"});
+  succeed({"report", "case", "--quiet"});
+  std::string const html = read("case/report.html");
+  EXPECT_THAT(html, HasSubstr("\"estimated uncertainty"));
+  EXPECT_THAT(html, testing::Not(HasSubstr("Does the estimated uncertainty describe the error?")));
 }
 
 // The reports of a case and of a measurement end in the density of gladstone reconstruct, number by number; that of the

@@ -189,7 +189,7 @@ TEST_F(SetupErrors, SeveralProblemsComeTogetherInTheOrderOfTheFile) {
   EXPECT_EQ(names(), std::vector<std::string>{"setup.toml"});
 }
 
-TEST_F(SetupErrors, WhatIsOfOthersOrDueLaterIsRefusedByName) {
+TEST_F(SetupErrors, TablesAndChoicesOfOtherExperimentsAreRefused) {
   refused("\"bos\"", "\"piv\"", "target]", "invalid_value", {"[particles]"});
   refused("[correlate]", "[correlate]\nmethod = \"rcp\"", "method = \"rcp\"", "unknown_choice", {"\"scc\"", "\"rpc\""});
   std::string const two = with(with(small_setup, "[camera]", "[[camera]]"), "[lens]", "[[camera]]\n[lens]");

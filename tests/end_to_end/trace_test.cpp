@@ -55,7 +55,7 @@ TEST_F(Trace, ARayThroughAUniformGradientTurnsByTheGradientTimesThePath) {
   EXPECT_TRUE(std::isnan(rows[0].column));
 }
 
-TEST_F(Trace, ARayThatMissesComesBackAsItWentIn) {
+TEST_F(Trace, RaysThatMissTheMediumAreUnchanged) {
   auto const rows = trace("1,2,-250,0,0.6,-0.8\n1,2,100,3,0,4\n", "medium");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].status, "alive");

@@ -212,7 +212,7 @@ TEST_F(FieldFiles, NrrdVolumeBendsAsTheGradientItHolds) {
 // A volume 4 mm wide in a view of 4.09 mm at its depth: its faces cut the cones of dots on all sides. One warning
 // states the error of the truth with 32 rays for each of these dots, that "auto" exposure depends on them, and the
 // remedy.
-TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
+TEST_F(FieldFiles, FacesInViewCauseAWarningWithTheErrorOfTheTruth) {
   write_volume();
   write("faces.toml", setup("ramp.nrrd", "spacing_mm = [0.25, 0.25, 2.5]"));
   auto const rendered = [&](std::vector<std::string> const& more) {

@@ -800,7 +800,7 @@ TEST_F(NrrdField, NanAndHolesAreRefused) {
               ThrowsDataError(ErrorCode::invalid_value, "a.nrrd", HasSubstr("1 of 24")));
 }
 
-TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
+TEST_F(NrrdField, RefusesUnsupportedHeaders) {
   auto const refuses = [&](std::string const& fields, ErrorCode code) {
     std::string const path = write("a.nrrd", header(fields) + "\n" + std::string(24, '\1'));
     EXPECT_THAT([&] { read_all(*open_field(path, "")); }, ThrowsDataError(code, "a.nrrd")) << fields;

@@ -41,7 +41,7 @@ void write_ramp(std::string const& path, std::size_t rows) {
   writer.close();
 }
 
-TEST_F(Hdf5, WhatIsWrittenIsReadBack) {
+TEST_F(Hdf5, ReadsTheValuesThatWereWritten) {
   std::string const path = in_folder("a.h5");
   std::vector<double> const values{0.1, -0.0, std::nan(""), std::numeric_limits<double>::infinity(), 5e-324, 1e300};
   std::vector<std::int64_t> const counts{-1, 9007199254740993};
@@ -172,7 +172,7 @@ TEST_F(Hdf5, MissingDatasetIsNamedWithThoseThatExist) {
   EXPECT_THAT([&] { reader.read_integers("group/deeper/ramp"); }, ThrowsDataError(ErrorCode::wrong_type, "a.h5"));
 }
 
-TEST_F(Hdf5, WhatIsNoHdf5FileIsSaidToBeNone) {
+TEST_F(Hdf5, RejectsFilesOfOtherFormats) {
   std::ofstream(in_folder("text.h5")) << "not at all";
   EXPECT_THAT([&] { Hdf5Reader reader(in_folder("text.h5")); }, ThrowsDataError(ErrorCode::wrong_format, "text.h5"));
   EXPECT_THAT([&] { Hdf5Reader reader(in_folder("absent.h5")); },
@@ -191,7 +191,7 @@ TEST_F(Hdf5, FileCutShortIsSaidToBeDamaged) {
 // A file of 10007 rows written in chunks has 240 kB. The header of a damaged copy declares 2^60 bytes, or 2.4 GB, which
 // would fit into the memory of some machines. No compression ratio explains such a short file, so it must be refused
 // before memory is allocated.
-TEST_F(Hdf5, WhatAHeaderPromisesIsHeldAgainstTheFile) {
+TEST_F(Hdf5, RejectsHeadersThatDeclareMoreThanTheFileCanContain) {
   std::string const path = in_folder("promise.h5");
   for (std::string const& promised : {std::string("\0\0\0\0\0\0\0\x02", 8), std::string("\0\xe1\xf5\x05\0\0\0\0", 8)}) {
     write_ramp(path, 10007);
@@ -240,7 +240,7 @@ TEST_F(Hdf5, ChunksAreReadBack) {
 }
 
 // Zeros are compressed to less than a thousandth of their size; 160 MB of them must still be read.
-TEST_F(Hdf5, WhatCompressesWellIsNoDamage) {
+TEST_F(Hdf5, ReadsHighlyCompressedDatasets) {
   std::string const path = in_folder("zeros.h5");
   std::size_t const count = 20'000'000;
   Hdf5Writer writer(path, origin(), Hdf5Growth::on_disk);
@@ -276,7 +276,7 @@ TEST_F(Hdf5, FullDiskLeavesTheOldFileAndAMessage) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(Hdf5, WithoutCloseNothingIsLeft) {
+TEST_F(Hdf5, WriterWithoutCloseLeavesNoFile) {
   {
     Hdf5Writer writer(in_folder("a.h5"), origin());
     writer.write("/x", ramp(3), {3}, "1", "x", "x");

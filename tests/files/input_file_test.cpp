@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using InputFiles = FolderFixture;
 
 // Opening a pipe without a writer blocks for ever, and a device has no end.
-TEST_F(InputFiles, WhatIsNoRegularFileIsRefusedByNameBeforeItIsOpened) {
+TEST_F(InputFiles, PipesAndDevicesAreRefusedBeforeTheyAreOpened) {
   ASSERT_EQ(::mkfifo(in_folder("pipe").c_str(), 0600), 0);
   EXPECT_THAT([&] { InputFile file(in_folder("pipe"), "a setup file"); },
               ThrowsDataError(ErrorCode::unreadable_file, in_folder("pipe")));
@@ -70,7 +70,7 @@ TEST_F(InputFiles, ATextThatIsLongerThanAllowedIsRefusedUnread) {
 }
 
 // Files of the kernel report a size of zero.
-TEST_F(InputFiles, AFileThatTellsNoSizeIsReadToItsEnd) {
+TEST_F(InputFiles, FilesThatReportNoSizeAreReadToTheirEnd) {
   EXPECT_THAT(read_text_file("/proc/self/status"), HasSubstr("VmRSS:"));
 }
 

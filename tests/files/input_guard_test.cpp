@@ -29,7 +29,7 @@ class InputGuards : public Output {
   }
 };
 
-TEST_F(InputGuards, WhatWasReadIsRefusedAsOutputUnderEveryName) {
+TEST_F(InputGuards, RefuseInputsAsOutputsUnderEveryName) {
   fs::create_symlink("input.txt", in_folder("link.txt"));
   fs::create_hard_link(in_folder("input.txt"), in_folder("hard.txt"));
   InputGuard const guard;

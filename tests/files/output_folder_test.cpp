@@ -323,7 +323,7 @@ TEST_F(OutputFolderTest, FailedMoveRestoresAllFiles) {
 
 // Derived files are removed, by name or pattern, in every subdirectory that receives new files; elsewhere they are
 // retained, as are all other files.
-TEST_F(OutputFolderTest, WhatIsDerivedGoesInEveryFolderThatGetsNewFiles) {
+TEST_F(OutputFolderTest, RemovesDerivedFilesInFoldersThatReceiveNewFiles) {
   FolderContent const content{"setup.toml", {"vectors.h5", "plane_*.tif"}};
   auto const write_cameras = [&](std::vector<std::string> const& cameras) {
     OutputFolder folder(in_folder("case"), content);

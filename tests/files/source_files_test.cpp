@@ -138,7 +138,7 @@ TEST_F(SourceFilesTest, AnHdf5FileNamesItsSourcesAndIsNotWrittenWhereTheyChange)
   EXPECT_THAT(names(), testing::ElementsAre("a.h5", "rays.csv"));
 }
 
-TEST_F(SourceFilesTest, WhatIsNoFileIsNotRead) {
+TEST_F(SourceFilesTest, RefusesPipesAndDevices) {
   ASSERT_EQ(mkfifo(in_folder("pipe").c_str(), 0666), 0);
   EXPECT_THAT([&] { byte_sha256(in_folder("pipe")); }, ThrowsDataError(ErrorCode::unreadable_file, "pipe"));
   EXPECT_THAT([] { byte_sha256("/dev/zero"); }, ThrowsDataError(ErrorCode::unreadable_file, "/dev/zero"));

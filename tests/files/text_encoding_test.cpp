@@ -12,7 +12,7 @@ TEST(Utf8, AcceptsRfc3629Sequences) {
     EXPECT_TRUE(is_utf8(text)) << text;
 }
 
-TEST(Utf8, IsNothingElse) {
+TEST(Utf8, RejectsInvalidByteSequences) {
   for (std::string_view const text : {"D\xfcse",               // ISO-8859-1
                                       "\x80",                  // begins with a continuation byte
                                       "\xc3",                  // truncated

@@ -36,7 +36,7 @@ struct LensTable {
     }
     none.resize(displacements.size());
     table.straight = table.sloping = lattice;
-    table.way = way;
+    table.mid_plane_fraction = way;
     table.displacements = displacements.data();
     table.shifts = shifts.data();
     table.displacement_slopes = table.shift_slopes = none.data();

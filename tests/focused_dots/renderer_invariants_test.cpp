@@ -15,7 +15,7 @@ bool same_bits(Range const& a, Range const& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(*a.data())) == 0;
 }
 
-// interface.md, Repeatability: images accumulate in integers, and a dot's sums follow the order of its rays.
+// Images accumulate in integers, and the sums of a dot follow the order of its rays, so that no sum depends on threads.
 TEST(FocusedDotsRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");

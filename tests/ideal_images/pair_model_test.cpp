@@ -86,9 +86,9 @@ TEST(PairModel, MakesTheImagesOfTheScene) {
   }
 }
 
-// A pixel that adds up the shares of all images in their order, by fused operations, has the light of the drawing by
-// rows, to the last bit. The device adds them up so.
-TEST(PairModel, PixelsAddUpSharesInOrder) {
+// The device computes the light of a pixel as the sum of the contributions of all images, in the order of the images
+// and by fused operations. This sum equals the light of an image drawn row by row, to the bit.
+TEST(PairModel, SumOverImagesEqualsDrawingByRows) {
   for (double const pitch : {5e-6, 1.2e-6}) {
     gladstone::Setup setup = small_pair();
     setup.camera.pixel_pitch = pitch;

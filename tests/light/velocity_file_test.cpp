@@ -109,7 +109,7 @@ TEST(VelocityFile, ConvertsTheUnitOfTheFile) {
 
 // A wave over the period of 16 nodes: the error of a cubic spline is at most (2 pi / 16)^4 / 384 of its amplitude, and
 // the wave continues periodically beyond the nodes.
-TEST(VelocityFile, RepeatsWhatIsPeriodic) {
+TEST(VelocityFile, RepeatsPeriodicFields) {
   auto const wave = [](Vec3d p) {
     return Vec3d{std::sin(2 * pi * p.x / (16 * node_step)), std::cos(2 * pi * p.y / (16 * node_step)), 0};
   };

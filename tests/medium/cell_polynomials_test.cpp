@@ -70,7 +70,7 @@ void expect_same(Grid const& grid) {
   }
 }
 
-TEST(CellPolynomials, SayWhatTheGridSays) {
+TEST(CellPolynomials, EqualTheInterpolationOfTheGrid) {
   auto const spline = sampled<float>(open_grid(8, 7, 6), rough);
   expect_same<CubicBspline>(spline.view<double, CubicBspline, 3>(0, 0));
   auto const linear = sampled<float>(open_grid(8, 7, 6), rough, false);

@@ -760,7 +760,7 @@ TEST(LensFiles, TheFilesCatalogueIsThatOfAGlassOfSeveral) {
 }
 
 // A usable glass, one with an index below 1, and one without a range of wavelengths.
-TEST(LensFiles, AnOddGlassLeavesItsCatalogueUsable) {
+TEST(LensFiles, ACatalogueWithAnInvalidGlassRemainsUsable) {
   GlassCatalogue glasses;
   glasses.add_file(case_path("good_and_odd_glass.agf"));
   ASSERT_EQ(glasses.glasses().size(), 1u);

@@ -165,7 +165,7 @@ TEST(Mirror, CassegrainIsStigmaticAndAsLongAsItsFormulaSays) {
 
 // A stop transmits the share of a uniform beam that corresponds to its area. A plate of glass transmits 1 - ((n - 1)/(n
 // + 1))^2 at either face, and exp(-a t) inside.
-TEST(Energy, WeightsSumToWhatPasses) {
+TEST(Energy, WeightsSumToTheTransmittedShare) {
   double const n = 1.5, absorption = 30, thickness = 0.005, radius = 0.004, beam = 0.01;
   PosedStop<double> const stop{{}, radius, 0};
   ShapedSurface<double, Quadric<double>> front, back;

@@ -208,7 +208,7 @@ TEST(PublishedLenses, TelecentricLensTakesChiefRaysParallelToTheAxis) {
 // Hence the image of an object keeps its size when the object moves: if it is 0.3 m nearer or farther, its image
 // changes by less than 1 / 1000, whereas a perspective camera at the first vertex would show it a third larger or a
 // fifth smaller.
-TEST(PublishedLenses, TelecentricLensKeepsTheSizeOfWhatMoves) {
+TEST(PublishedLenses, ImageSizeOfATelecentricLensIsIndependentOfDistance) {
   Lens const lens = build(shipped("telecentric.toml"));
   double const distance = lens.prescription.object_distance;
   auto const image = [&](double way) {

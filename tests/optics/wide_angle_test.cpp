@@ -62,7 +62,7 @@ TEST(WideAngleLens, ChiefRaysToEightyFiveDegreesFollowAnIndependentTracer) {
 
 // A ray traced backwards from the stop's centre and then reversed returns to the stop's centre with its initial slope:
 // through glass, and through an ideal lens in front of the stop, which is exact in slopes for one direction only.
-TEST(TraceBack, RunsAlongTheRayThatComes) {
+TEST(TraceBack, IsTheReverseOfTracingForwards) {
   Prescription prescription =
       lens_of({{50, 5, 1.5}, {-80, 20, 1}, {HUGE_VAL, 10, 1}, {HUGE_VAL, 10, 1, true}}, 5).prescription;
   prescription.surfaces[2].shape = PrescribedSurface::Shape::ideal_lens;

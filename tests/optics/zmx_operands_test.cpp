@@ -84,7 +84,7 @@ TEST(ZmxOperands, AnAutomaticSemiDiameterIsNoEdge) {
 }
 
 // Shapes that are not traced are ignored with a warning that contains line and operand; impossible shapes are refused.
-TEST(ZmxOperands, WhatBlocksLightOtherwiseIsNotedByName) {
+TEST(ZmxOperands, UnsupportedAperturesCauseWarningsWithTheirName) {
   for (char const* const line : {"SPID 0.5 3 0", "UDAP 0 0", "UDOB 0 0", "OBSC 1 2 0"}) {
     std::string const key = std::string(line).substr(0, 4);
     EXPECT_THAT(notes_of("block.zmx", with_operand(line)),
@@ -105,7 +105,7 @@ TEST(ZmxOperands, ObscurationsThatReachTheEdgeAreTraced) {
 }
 
 // Operands that only change the amount of light cause a warning, and so do unknown ones.
-TEST(ZmxOperands, WhatIsPassedOverIsNoted) {
+TEST(ZmxOperands, IgnoredOperandsCauseWarnings) {
   EXPECT_THAT(notes_of("quiet.zmx", zmx), IsEmpty());
   EXPECT_THAT(notes_of("quiet.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0 0")), IsEmpty());
   EXPECT_THAT(notes_of("vignetting.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0.2 0")),

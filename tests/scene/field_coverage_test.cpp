@@ -51,7 +51,7 @@ TEST(FieldCoverage, NamesTheUnitThatWouldFit) {
   EXPECT_FALSE(field_coverage(box(1, 1), table1_setup(512)).warning()) << "a large field is plausible";
 }
 
-TEST(FieldCoverage, HasNothingToSayOfFieldsWithoutEnd) {
+TEST(FieldCoverage, IsCompleteForUnboundedFields) {
   FieldCoverage const slab =
       field_coverage({{-unbounded, -unbounded, -5e-3}, {unbounded, unbounded, 5e-3}}, table1_setup(512));
   EXPECT_EQ(slab.share, 1.0);

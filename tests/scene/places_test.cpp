@@ -25,7 +25,7 @@ TEST(Windows, StandInTheOrderLightMeetsThem) {
                                         window("camera", 50, 20) + window("camera", 70, 20))));
 }
 
-TEST(Windows, AreRefusedWhereSomethingElseStands) {
+TEST(Windows, AreRefusedWhereTheyOverlapOtherObjects) {
   auto const errors = [](std::string const& windows) { return error_of([&] { read_setup_text(bench(windows)); }); };
   for (std::string const& misplaced :
        {window("target", -300, 10), window("target", 0, 20), window("camera", 0, 20), window("camera", -50, 10),

@@ -148,7 +148,7 @@ TEST(Setup, DotsThatCannotFindRoomAreRefused) {
               refused(ErrorCode::invalid_value, "2:1"));
 }
 
-TEST(Setup, WhatIsOfOthersOrDueLaterIsRefusedByName) {
+TEST(Setup, RefusesTablesOfOtherExperiments) {
   EXPECT_THAT([] { read_setup_text("[[camera]]\n[[camera]]\n"); }, refused(ErrorCode::invalid_value, "1"));
   for (std::string const table : {"particles", "laser", "flow", "calibration"}) {
     EXPECT_THAT([&] { read_setup_text(std::string("[").append(table).append("]\n")); },

@@ -83,7 +83,7 @@ TEST(SetupTable, QuantitiesAreInSiAndTheirDefaultsInTheKeysUnit) {
   }
 }
 
-TEST(SetupTable, ChoicesAreWhatTheWordsStandFor) {
+TEST(SetupTable, ChoicesReturnTheValuesOfTheirWords) {
   auto setup = document("given = \"two\"\nwrong = \"three\"\n");
   SetupTable root = setup.root();
   std::vector<std::pair<std::string, int>> const numbers{{"one", 1}, {"two", 2}};
@@ -597,7 +597,7 @@ TEST(ResolvedSetup, ReadsBackToTheSame) {
   EXPECT_THAT(once, testing::Not(HasSubstr("unwritten")));
 }
 
-TEST(ResolvedSetup, AutoIsReplacedByWhatItCameTo) {
+TEST(ResolvedSetup, ContainsTheValueChosenForAuto) {
   auto setup = document("[medium]\nstep_mm = 'auto'\n");
   auto medium = setup.root().table("medium");
   EXPECT_EQ(medium.number_or_auto("step_mm"), std::nullopt);

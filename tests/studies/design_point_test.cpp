@@ -18,7 +18,8 @@ namespace {
 
 constexpr double bench_mm = 1e-3;
 
-// physics.md, "Seed Table 1 evaluated": every printed digit.
+// The set-up of Table 1 (Rajendran et al., 2019) by the formulas of a thin lens: M = f / (Z_B - f), image distance
+// f Z_B / (Z_B - f), pupil f / N, cone diameter D Z_D / Z_B; the others are those of docs/design.md.
 TEST(DesignPoint, IsTableOneToThePrintedDigits) {
   FixedDesignParameters const given = table1_given();
   DesignPoint<double> const b = table1_design(given);
@@ -35,8 +36,8 @@ TEST(DesignPoint, IsTableOneToThePrintedDigits) {
   EXPECT_NEAR(0.1 * given.camera.pixel_pitch / b.angular_sensitivity(), 34.10e-6, 5e-9);
 }
 
-// Fact 5 and 3.1: the fraction of Eq. 9 that is transmitted for waves of 4 and 8 mm; and the row of f-numbers at 8 mm,
-// with the PSF diameters.
+// The light cone averages a wave over discs: the fraction of Eq. 9 that remains is the mean of 2 J1(x) / x over sixteen
+// slices of the medium, with x = pi D_c / Lambda. Waves of 4 and 8 mm, then f-numbers at 8 mm with the PSF diameters.
 TEST(DesignPoint, ConeTransferAndSpotsAreThoseOfTheStops) {
   FixedDesignParameters const given = table1_given();
   DesignPoint<double> b = table1_design(given);

@@ -95,7 +95,8 @@ TEST(DesignSheet, IsTableOneToThePrintedDigits) {
   EXPECT_NEAR(sheet["small_angle_on_axis"], 2.25937e-5 * 2.25937e-5 * (1.0 / 6 + 0.04 / 24), 1e-15);
 }
 
-// Faces that refract: 3.463e-10 from the exact slab (physics.md 3.1).
+// In a slab with a uniform gradient tan theta = sinh(eps) at the exit. Behind a face that refracts sin theta =
+// sinh(eps), so that the error of the small angle is eps^2 (2/3 + 7 L_z / (24 Z_D)), 3.463e-10.
 TEST(DesignSheet, SmallAnglesThroughRefractingFacesAreTheSlabs) {
   std::string text = sheet_setup;
   text.replace(text.find("[medium.field]"), 0, "[medium]\nfaces = \"refract\"\n");
@@ -216,7 +217,7 @@ window_px = [64, 32]
 CaseSetup load_droplets() { return load_case_setup(SetupDocument::from_text(droplets, "piv.toml")); }
 
 // The droplets of the example in docs/piv.md: the sheet agrees with info particles, and states how far they may move.
-TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
+TEST(DesignSheet, OfPivLimitsTheDisplacementBetweenThePulses) {
   CaseSetup const loaded = load_droplets();
   DesignSheet const sheet = piv_sheet(loaded);
   double const pixel = 5e-6 / (105.0 / 645);

@@ -159,7 +159,7 @@ std::vector<MeasurementInput> correlated_distances(double coefficient) {
 // JCGM 100:2008, eq. 16: the variance is the sum of c_i c_j u_i u_j r_ij, and that of the samples, too, within three
 // standard errors (0.22 % each). With a coefficient of 1 the contributions add with their signs, with -1 they are
 // subtracted: Z_A / (Z_B - f) of 2 / 750 and (Z_D / (Z_B - f) - 1) of 1 / 250.
-TEST(Propagation, AddsWhatInputsHaveInCommon) {
+TEST(Propagation, AddsTheCovariancesOfCorrelatedInputs) {
   GradientMeasurement<double> const at = measured_at_table1();
   double const rest = 1 - 0.105, a = 0.75 / rest * 2 / 750 * 10, d = (0.25 / rest - 1) / 250 * 10;
   for (double const r : {-1.0, -0.6, 0.0, 0.8, 1.0}) {

@@ -30,6 +30,13 @@ TEST(ResultRows, AreTextWithSymbolUnitMarginAndNote) {
   EXPECT_THAT(text, testing::ContainsRegex("position. +unknown  .violated.  .no stop.\n"));
 }
 
+TEST(ResultRows, AreAlignedIfALabelIsLong) {
+  std::string const label(60, 'x');
+  std::string const text = rows_text(
+      {{.key = "a", .label = label, .value = 1, .margin = Margin::green}, {.key = "b", .label = "short", .value = 2}});
+  EXPECT_EQ(text, "  " + label + " 1  [ok]\n  short" + std::string(56, ' ') + "2\n");
+}
+
 TEST(ResultRows, AreJsonWhoseKeysWithPointsAreObjects) {
   nlohmann::ordered_json const expected{{"focal_length_mm", 105.0},
                                         {"pupil_mm", {{"diameter", nullptr}, {"position", nullptr}}}};

@@ -96,6 +96,8 @@ TEST(AxisTitle, ComesFromTheKeyWithItsUnit) {
   EXPECT_EQ(axis_title("lens.focal_length_mm"), "focal length [mm]");
   EXPECT_EQ(axis_title("lens.f_number"), "f-number");
   EXPECT_EQ(axis_title("geometry.z_d_mm"), "Z_D [mm]");
+  EXPECT_EQ(axis_value_text("Z_D [mm]", "200"), "Z_D = 200 mm");
+  EXPECT_EQ(axis_value_text("f-number", "16"), "f-number = 16");
   EXPECT_EQ(axis_title("medium.field.amplitude_kg_m3"), "amplitude [kg/m³]");
   EXPECT_EQ(axis_title("camera.noise.read_noise_e"), "read noise [e⁻]");
   EXPECT_EQ(axis_title("camera.pixel_pitch_um"), "pixel pitch [µm]");
@@ -152,7 +154,7 @@ TEST(StudyCurves, AreCombinationsOfTheOtherAxesWhileColoursLast) {
   StudyCells const cells(table);
   std::vector<CurveChoice> const four = curves_over(cells, 2, 7);
   ASSERT_EQ(four.size(), 4u);
-  EXPECT_EQ(four[1].name, "a, Z_D 2 mm");
+  EXPECT_EQ(four[1].name, "a, Z_D = 2 mm");
   EXPECT_EQ(cells.rows_at({{2, 0}, {0, 0}, {1, 1}}).size(), 2u);
   EXPECT_TRUE(cells.only_repeats_differ(cells.rows_at({{2, 0}, {0, 0}, {1, 1}})));
   EXPECT_FALSE(cells.only_repeats_differ(cells.rows_at({{2, 0}, {0, 0}})));
@@ -174,7 +176,7 @@ TEST_F(StudyFigures, AreCurvesBudgetsAndMapsInTwoFormats) {
                           "budget_geometry_z_d_mm.svg", "repeats_geometry_z_d_mm.png", "repeats_geometry_z_d_mm.svg"));
   EXPECT_GT(read_image((folder_ / names[0]).string()).columns(), 700);
   std::string const svg = content(folder_ / "error_against_lens_f_number.svg");
-  for (char const* piece : {"Error against f-number", "Z_D 200 mm", "measured − Eq. 9", "study some_study, 12 cases",
+  for (char const* piece : {"Error against f-number", "Z_D = 200 mm", "measured − Eq. 9", "study some_study, 12 cases",
                             "root mean square over 2 repeats"}) {
     EXPECT_THAT(svg, HasSubstr(piece));
   }
@@ -234,7 +236,7 @@ TEST(StudyFigureMaker, PlotsAPointForEveryFinishedCase) {
   plot::Layer const& points = figure->panels.front().layers.front();
   EXPECT_THAT(points.columns[0], ElementsAre(0.25, 0.5));
   EXPECT_THAT(points.columns[1], ElementsAre(0.04, 0.06));
-  EXPECT_EQ(points.notes[1], "case 2\nf-number: 16\nsignal: 0.5 px\nmeasured − Eq. 9: 0.06 px");
+  EXPECT_EQ(points.notes[1], "case 2\nf-number = 16\nsignal: 0.5 px\nmeasured − Eq. 9: 0.06 px");
   EXPECT_EQ(figure->panels.front().y.label, "measured − Eq. 9, rms per component [px]");
   table.measures[2] = "other_px";
   EXPECT_FALSE(StudyFigureMaker(table).make_case_points()) << "a study without signals";

@@ -13,7 +13,7 @@ namespace {
 // per dot. An error below the detection limit is bounded by that limit: two standard errors of the truth over both
 // components at 16 positions, 6e-5 px with 8192 traced rays per scrambling. The bound 1e-4 px is the one in
 // table1.toml.
-TEST(Table1, IsAsGoodAsItSays) {
+TEST(Table1, HasTheResidualErrorsStatedInItsFile) {
   CaseSetup const loaded = load_case_setup(shared_folder() + "/studies/cases/table1.toml", {});
   Scene const scene = build_scene(loaded.setup);
   RenderPlan const plan = plan_rendering(scene);

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Temporary folders in a separate place for this test.
-class PassingFolders : public testing::Test {
+/// Creates temporary directories in a separate TMPDIR, so that the test can count them.
+class TemporaryDirectories : public testing::Test {
  protected:
   void SetUp() override {
     fs::remove_all(place_);
@@ -28,10 +28,10 @@ class PassingFolders : public testing::Test {
   }
   std::ptrdiff_t count() const { return std::distance(fs::directory_iterator(place_), {}); }
 
-  fs::path const place_ = fs::path(testing::TempDir()) / "passing";
+  fs::path const place_ = fs::path(testing::TempDir()) / "temporary_directories";
 };
 
-TEST_F(PassingFolders, IsPrivateAndRemovedOnDestruction) {
+TEST_F(TemporaryDirectories, IsPrivateAndRemovedOnDestruction) {
   {
     TemporaryDirectory const one, other;
     EXPECT_NE(one.path(), other.path());
@@ -44,7 +44,7 @@ TEST_F(PassingFolders, IsPrivateAndRemovedOnDestruction) {
 }
 
 // The killed process cannot remove anything; the folder of a running one remains.
-TEST_F(PassingFolders, AbandonedOnesAreRemoved) {
+TEST_F(TemporaryDirectories, AbandonedOnesAreRemoved) {
   int ready[2];
   ASSERT_EQ(::pipe(ready), 0);
   pid_t const child = ::fork();

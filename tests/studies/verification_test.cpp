@@ -21,7 +21,7 @@ using testing::Not;
 // A density wave of 8 mm in the set-up of Table 1: cone, dot and window transmit the product of their transfer
 // functions (F10 to F12), a closed form. The lattice interpolates linearly between nodes h = 2 px apart, which loses
 // (pi h / l)^2 / 2 of a wave of l = 107 px, 0.0017, and the recurrence's 512 points have an error of 0.002.
-TEST(PredictedBlur, PassesOfAWaveWhatTheFormulasPass) {
+TEST(PredictedBlur, TransmitsTheProductOfTheTransferFunctions) {
   CaseSetup const loaded = load_case_setup(SetupDocument::from_text(R"(schema = 1
 [camera]
 pixels = [256, 256]

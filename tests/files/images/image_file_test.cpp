@@ -498,7 +498,7 @@ TEST(ImageFile, EveryFloatAndEveryPackingOfTiffKeepsItsValues) {
   }
 }
 
-TEST(ImageFile, WhatWasDoneToAPictureIsReported) {
+TEST(ImageFile, ReportsOrientationAndConversions) {
   ImageMetadata metadata;
   read_image(case_path("orientation_6.tif"), &metadata);
   EXPECT_EQ(metadata.orientation, 6);
@@ -625,7 +625,7 @@ TEST(ImageFile, PixelsThatAreNoNumbersAreCounted) {
   EXPECT_EQ(count_not_finite(read_image(path)), 3u);
 }
 
-TEST(ImageFile, WhatCannotBeWrittenIsSaid) {
+TEST(ImageFile, FailureToWriteIsAnOutputError) {
   EXPECT_THAT([] { write_tiff("/dev/full", all_values(), {}); }, ThrowsOutputError("/dev/full"));
   EXPECT_THAT([] { write_tiff("/proc/no/such/folder/a.tif", all_values(), {}); }, ThrowsOutputError("/proc/no"));
   std::string const path = temporary("no_room.tif");

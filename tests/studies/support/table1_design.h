@@ -4,8 +4,8 @@
 
 namespace gladstone {
 
-/// Medium of Table 1 (Rajendran et al. 2019), as evaluated in physics.md: K = 2.26e-4, n0 = 1.00027685, L_z = 10 mm, 10
-/// um pixels, 532 nm.
+/// Medium and camera of Table 1 (Rajendran et al., 2019): K = 2.26e-4 m^3/kg, n0 = 1.00027685, L_z = 10 mm, pixels of
+/// 10 um, 532 nm.
 inline FixedDesignParameters table1_given() {
   FixedDesignParameters given;
   given.camera.columns = given.camera.rows = 512;

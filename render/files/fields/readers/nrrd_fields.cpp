@@ -62,7 +62,7 @@ void NrrdFields::refuse(ErrorCode code, std::string const& key, std::string cons
 }
 
 std::string const& NrrdFields::required(std::string const& key) const {
-  if (!has(key)) refuse(ErrorCode::missing_content, key, "is missing");
+  if (!has(key)) refuse(ErrorCode::missing_content, key, "is missing in the header; write the file again");
   return values_.at(key);
 }
 
