@@ -21,9 +21,9 @@ inline constexpr std::uint64_t refined_table_rays = 512;  ///< rays per dot that
 
 /// Completes a plan that has a step with the number of rays per dot that correct the table, and the fineness of table
 /// and rules.
-/// If RenderPlan::given_rays is set, it is used unchanged. Otherwise it is 32 rays. If the errors exceed 1e-3 px rms in the
-/// truth or half a grey level in images, table and rules are refined by a factor of two, with 512 rays. Dots with large
-/// scatter use up to 256 rays (DotModel). The plan contains the remaining error of the table.
+/// If RenderPlan::given_rays is set, it is used unchanged. Otherwise it is 32 rays. If the errors exceed 1e-3 px rms in
+/// the truth or half a grey level in images, table and rules are refined by a factor of two, with 512 rays. Dots with
+/// large scatter use up to 256 rays (DotModel). The plan contains the remaining error of the table.
 RenderPlan plan_rays_by_table(FocusedDots const& dots);
 
 /// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].
