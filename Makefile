@@ -63,9 +63,10 @@ build: configure  ## install missing Debian packages and build build/bin/gladsto
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone
 
 test: OPTIONAL_PACKAGES = $(TEST_PACKAGES)
+# One more test at a time than cores: many wait for a program or a file.
 test: configure  ## build and run all tests; of some rooms: TESTED='base medium'; to repeat: ctest --test-dir build -R medium/
 	cmake --build $(BUILD) --parallel $(JOBS) $(if $(TESTED),--target $(subst /,_,$(TESTED:%=%_tests)))
-	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) \
+	ctest --test-dir $(BUILD) --output-on-failure --parallel $$(($(JOBS) + 1)) \
 		$(if $(TESTED),--label-regex '^($(subst $(space),|,$(strip $(TESTED))))$$') \
 		$(if $(LEFT_OUT),--exclude-regex '$(LEFT_OUT)')
 
