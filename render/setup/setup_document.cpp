@@ -208,11 +208,7 @@ void SetupDocument::finish() {
 
 std::string SetupDocument::resolved() const { return resolved_toml(state_->record); }
 
-std::string SetupDocument::written() const {
-  auto const is_absolute = [this](SetupFileName const& file) { return state_->find(file.path)->text == file.absolute; };
-  bool const absolute = std::all_of(state_->files.begin(), state_->files.end(), is_absolute);
-  return toml_document(absolute ? state_->root : absolute_root(*state_));
-}
+std::string SetupDocument::written() const { return toml_document(absolute_root(*state_)); }
 
 SetupDocument SetupDocument::unread() const {
   auto state = std::make_unique<State>();

@@ -64,8 +64,8 @@ class SetupDocument {
   /// Returns the setup as written, as one TOML document without defaults; file names that were read are absolute.
   std::string written() const;
 
-  /// Returns the document that parsing written() gives, except that messages still refer to the original file: the keys
-  /// are sorted, none of them has been read, and no problems are known.
+  /// Returns the document that parsing written() gives, except that messages still refer to the original file: its keys
+  /// are sorted and unread, and it has no problems.
   SetupDocument unread() const;
 
   /// Returns the absolute names of the files read by required_path() and path_list().

@@ -38,7 +38,7 @@ std::vector<ResultRow> range_rows(std::string const& label, std::vector<double> 
 std::vector<ResultRow> axis_rows(AxisymmetryResult const& flow) {
   char const* const note = std::isfinite(flow.asymmetry) ? "" : "one side of the axis is measured";
   return {plain_row("position_mm", "position of the axis", 1e3 * flow.axis.position, "mm"),
-          plain_row("sigma_mm", "its standard uncertainty", 1e3 * flow.axis.sigma, "mm"),
+          plain_row("sigma_mm", "position of the axis, standard uncertainty", 1e3 * flow.axis.sigma, "mm"),
           plain_row("lambda", "regularisation parameter", flow.lambda),
           plain_row("asymmetry", "asymmetry of the gradient", flow.asymmetry, "", note),
           plain_row("border_gradient", "gradient at the border over that of all radii", flow.border_gradient)};
@@ -61,7 +61,8 @@ std::vector<ResultRow> density_rows(Reconstruction const& reconstruction) {
       count_row("determined", "nodes with a density", select_finite(reconstruction.density).size())};
   append_rows(rows, range_rows("density", reconstruction.density), "density_kg_m3");
   append_rows(rows, range_rows("standard uncertainty", reconstruction.sigma), "sigma_kg_m3");
-  append_rows(rows, range_rows("contribution of the vectors to it", reconstruction.sigma_random), "sigma_random_kg_m3");
+  append_rows(rows, range_rows("standard uncertainty due to the vectors", reconstruction.sigma_random),
+              "sigma_random_kg_m3");
   rows.push_back(density_row("reference_density_kg_m3", "reference density", reconstruction.reference_density));
   rows.push_back(plain_row("white_noise_gain", "amplification of white noise by the deconvolution",
                            reconstruction.white_noise_gain));

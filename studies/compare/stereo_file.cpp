@@ -111,13 +111,13 @@ std::vector<ResultRow> alignment_rows(StereoMeasurement const& measurement) {
                            : alignment.has_converged() ? "not significant: the given sheet is used"
                                                        : "not converged: the given sheet is used";
   return {plain_row("z_mm", "laser sheet, Z at X = Y = 0", fit.plane.height / unit::mm, "mm", note),
-          plain_row("z_sigma_mm", "its standard uncertainty", fit.height_sigma / unit::mm, "mm"),
+          plain_row("z_sigma_mm", "standard uncertainty of Z", fit.height_sigma / unit::mm, "mm"),
           plain_row("slope.0", "laser sheet, dZ/dX", fit.plane.slope.x),
           plain_row("slope.1", "laser sheet, dZ/dY", fit.plane.slope.y),
           plain_row("slope_sigma.0", "standard uncertainty of dZ/dX", fit.slope_sigma.x),
           plain_row("slope_sigma.1", "standard uncertainty of dZ/dY", fit.slope_sigma.y),
           plain_row("disparity_px", "disparity for the given sheet", alignment.disparity_px.front(), "px"),
-          plain_row("disparity_sigma_px", "its standard uncertainty", alignment.disparity_sigma_px, "px"),
+          plain_row("disparity_sigma_px", "standard uncertainty of the disparity", alignment.disparity_sigma_px, "px"),
           plain_row("residual_px", "disparity after the correction", alignment.disparity_px.back(), "px"),
           plain_row("scatter_px", "scatter of the disparities", alignment.scatter_px, "px"),
           count_row("iterations", "iterations of the sheet", alignment.disparity_px.size()),
@@ -127,7 +127,7 @@ std::vector<ResultRow> alignment_rows(StereoMeasurement const& measurement) {
 
 std::vector<ResultRow> given_sheet_rows(stereo::SheetAlignment const& sheet) {
   return {plain_row("disparity_px", "disparity for the given sheet", sheet.disparity_px.front(), "px"),
-          plain_row("disparity_sigma_px", "its standard uncertainty", sheet.disparity_sigma_px, "px"),
+          plain_row("disparity_sigma_px", "standard uncertainty of the disparity", sheet.disparity_sigma_px, "px"),
           plain_row("scatter_px", "scatter of the disparities", sheet.scatter_px, "px")};
 }
 

@@ -23,7 +23,7 @@ TextTable numbers_table(nlohmann::ordered_json const& summary) {
   TextTable table{"Numbers of the density [kg/m^3]", {"quantity", "least", "median", "largest"}, {}};
   for (auto const& [group, name] : {std::pair{"density_kg_m3", "density"},
                                     {"sigma_kg_m3", "standard uncertainty"},
-                                    {"sigma_random_kg_m3", "contribution of the vectors to it"}}) {
+                                    {"sigma_random_kg_m3", "standard uncertainty due to the vectors"}}) {
     table.rows.push_back({{name},
                           TableCell::of(number_at(summary, group, "least")),
                           TableCell::of(number_at(summary, group, "median")),

@@ -39,7 +39,7 @@ struct ManifestCase {
                                                                    ///< order
   /// Complete setup (TOML) with absolute file names; "auto" values are not resolved.
   std::string setup;
-  /// The same setup of a case that was planned in this process; null: read from a manifest.
+  /// Parsed `setup`; null for a case that was read from a manifest.
   std::shared_ptr<SetupDocument const> document;
   std::map<std::string, std::string> inputs;  ///< file_hash() of every file in the setup, by its absolute name
   /// Hash, by content_hash(), of the line without its last member, which contains this hash.

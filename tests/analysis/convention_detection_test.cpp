@@ -370,7 +370,7 @@ TEST(DetectConventions, ReportsOnlyDeterminableConventions) {
   EXPECT_NEAR(stretch.reasons[0].value.x, 3.0, 0.005) << "the description has three digits";
   EXPECT_TRUE(std::isnan(stretch.reasons[0].value.y)) << "v does not determine a factor";
   EXPECT_THAT(numbers_in(describe_mistake(stretch)), testing::ElementsAre(3));
-  EXPECT_NEAR(stretch.correction.factor.x, 3.0, 0.005);
+  EXPECT_NEAR(stretch.correction.factor.x, 3.0, 0.005) << "the description has three digits";
 }
 
 // A bias of u is not reported as a shift of positions by a pixel, which would change the many small errors of v but

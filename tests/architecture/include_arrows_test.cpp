@@ -193,8 +193,8 @@ TEST(Tree, LinksTheRoomsOfTheTable) {
 
 // The page for developers lists the same rooms as the table of includes, and the same permitted rooms wherever its row
 // consists of names ("`render/files`, `analysis/vectors`; OpenCV in `.cpp` only") rather than of a rule ("all of
-// `studies`"). A row of studies omits the libraries, which all of them may include, and the folder of its own rooms
-// ("`drawing`, `case`").
+// `studies`"). A row of a room of studies omits the libraries, which every such room may include, and the folder
+// `studies/` ("`drawing`, `case`").
 TEST(Tree, DocumentsRoomsAndArrows) {
   std::ifstream in(std::filesystem::path(GLADSTONE_SOURCE_DIR) / "docs/architecture.md");
   std::map<std::string, std::string> documented;  // third cell of each row, by room

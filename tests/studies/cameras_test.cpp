@@ -50,7 +50,7 @@ void expect_consistent(CaseSetup const& loaded) {
   EXPECT_EQ(again.setup.target.dots_per_32px_window, loaded.setup.target.dots_per_32px_window);
 }
 
-// Each setup is read once. Its common target is that of its resolved setup, in which no key of its own target is left.
+// Each setup is read once. The resolved setup of a camera contains the common target instead of its own.
 TEST(LoadedCameras, HaveTheTargetOfTheirResolvedSetups) {
   std::vector<CameraCase> const cameras =
       load("[geometry]\nz_d_mm = 250.0\n[target]\ndots_per_32px_window = 10.0\ndot_diameter_px = 3.0\n");
